@@ -1,0 +1,231 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The topics and services of the node `rigid_sim`: one table each.
+
+A published topic is a row of `PUBLISHED`: its name, type, quality of service, and how its bytes
+are made. The node and the recorder go through the rows; adding a topic is adding one. Nothing
+here needs ROS.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Callable, Optional
+
+import numpy as np
+from rigid_sim_ros import messages
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Quality of service, in the words of ROS 2; history is always keep last."""
+
+    depth: int = 10
+    reliability: str = 'reliable'
+    durability: str = 'volatile'
+
+
+EVERY_STEP = 'step'
+"""A message after every advance of simulated time."""
+
+ON_EVENTS = 'events'
+"""A message after an advance in which there were collision events; never an empty one."""
+
+ON_CHANGE = 'change'
+"""A message at the start and after the scene was replaced."""
+
+EVERY_SECOND = 'second'
+"""A message each second of wall time, also while paused."""
+
+
+@dataclass
+class Source:
+    """What messages are made from; the node keeps it up to date."""
+
+    simulation: Any
+    """A `rigid_sim_ros.engine.Simulation`."""
+
+    frame_id: str = 'world'
+    scene_text: str = ''
+    """The scene as loaded, YAML."""
+
+    collisions: Any = None
+    """The events since the last message, fields as in `Simulation.collisions`."""
+
+    statuses: tuple = ()
+    """`messages.DiagnosticStatus` of the node, the engine and the recorder."""
+
+
+@dataclass(frozen=True)
+class Published:
+    """
+    A published topic.
+
+    `encoder(source)` is called once for a `Source`, and gives a function from a time [ns] to the
+    bytes of the message at that time. An encoder holds what does not change while the source has
+    the same bodies.
+    """
+
+    name: str
+    type: str
+    quality: Quality
+    encoder: Callable
+    when: str
+    what: str
+    parameter: Optional[str] = None
+    """The parameter that turns the topic on, if it is one that can be off."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A subscribed topic."""
+
+    name: str
+    type: str
+    quality: Quality
+    what: str
+
+
+@dataclass(frozen=True)
+class Service:
+    """A service."""
+
+    name: str
+    type: str
+    what: str
+
+
+def _poses(source):
+    simulation = source.simulation
+    encoder = messages.PoseArrayEncoder(source.frame_id, len(simulation.names))
+    return lambda time_ns: encoder.encode(time_ns, simulation.position, simulation.orientation)
+
+
+def _states(source):
+    simulation = source.simulation
+    encoder = messages.MultiDOFJointStateEncoder(source.frame_id, simulation.names)
+    return lambda time_ns: encoder.encode(
+        time_ns, simulation.position, simulation.orientation, simulation.linear_velocity,
+        simulation.angular_velocity, simulation.force, simulation.torque)
+
+
+def _collisions(source):
+    encoder = messages.CollisionEncoder(source.frame_id)
+    return lambda time_ns: encoder.encode(time_ns, source.collisions)
+
+
+def _collision_text(source):
+    names = source.simulation.all_names
+    return lambda time_ns: messages.encode_string(
+        messages.collision_lines(source.collisions, names))
+
+
+def _scene(source):
+    return lambda time_ns: messages.encode_string(source.scene_text)
+
+
+def _clock(source):
+    return messages.encode_clock
+
+
+def _diagnostics(source):
+    return lambda time_ns: messages.encode_diagnostic_array(time_ns, source.statuses)
+
+
+_COLORS = np.array([
+    (0.90, 0.62, 0.00), (0.34, 0.71, 0.91), (0.00, 0.62, 0.45), (0.94, 0.89, 0.26),
+    (0.00, 0.45, 0.70), (0.84, 0.37, 0.00), (0.80, 0.47, 0.65)])
+"""Okabe and Ito 2008: colours that colour-blind people tell apart, one body after the other."""
+
+_CONTACT_ARROW_LENGTH = 0.1
+"""[m], along the contact normal."""
+
+_LARGEST_ARROW_COUNT = 100
+"""More contacts than that are not drawn; the events topic has them all."""
+
+
+def _markers(source):
+    simulation = source.simulation
+    bodies = [body for body in simulation.scene.bodies if not body.fixed]
+    bodies += [body for body in simulation.scene.bodies if body.fixed]
+    moving_count = len(simulation.names)
+    position = np.array([body.position for body in bodies], dtype=float).reshape(-1, 3)
+    orientation = np.array([body.orientation for body in bodies], dtype=float).reshape(-1, 4)
+    color = np.ones((len(bodies), 4))
+    color[:, :3] = _COLORS[np.arange(len(bodies)) % len(_COLORS)]
+    color[moving_count:, :3] = 0.5
+    encoder = messages.MarkerArrayEncoder(
+        source.frame_id,
+        [messages.SPHERE if body.shape.kind == 'sphere' else messages.CUBE for body in bodies],
+        [[2 * extent for extent in body.shape.half_extents] for body in bodies], color)
+
+    def encode(time_ns):
+        position[:moving_count] = simulation.position
+        orientation[:moving_count] = simulation.orientation
+        events = source.collisions
+        start = np.empty((0, 3)) if events is None else events['point'][-_LARGEST_ARROW_COUNT:]
+        end = start + _CONTACT_ARROW_LENGTH * (
+            0 if events is None else events['normal'][-_LARGEST_ARROW_COUNT:])
+        return encoder.encode(time_ns, position, orientation, start, end)
+
+    return encode
+
+
+PUBLISHED = (
+    Published('~/poses', 'geometry_msgs/msg/PoseArray', Quality(10), _poses, EVERY_STEP,
+              'the moving bodies, in the order of the names in `~/scene`'),
+    Published('~/states', 'sensor_msgs/msg/MultiDOFJointState', Quality(10), _states, EVERY_STEP,
+              'names, poses, twists and held wrenches of the moving bodies'),
+    Published('~/collisions', 'sensor_msgs/msg/PointCloud2', Quality(100), _collisions, ON_EVENTS,
+              'one point an event: x y z, normal, impulse, speed, time_offset, body_a, body_b, '
+              'kind'),
+    Published('~/collision_text', 'std_msgs/msg/String', Quality(100), _collision_text, ON_EVENTS,
+              'the same events with names, a line of JSON each'),
+    Published('~/scene', 'std_msgs/msg/String', Quality(1, durability='transient_local'), _scene,
+              ON_CHANGE, 'the scene as loaded, YAML'),
+    Published('~/markers', 'visualization_msgs/msg/MarkerArray', Quality(1), _markers, EVERY_STEP,
+              'the bodies and the latest contacts for RViz and Foxglove'),
+    Published('/clock', 'rosgraph_msgs/msg/Clock', Quality(1, reliability='best_effort'), _clock,
+              EVERY_STEP, 'simulated time', parameter='publish_clock'),
+    Published('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', Quality(10), _diagnostics,
+              EVERY_SECOND, 'how the simulation, the node and the recorder are doing'),
+)
+"""Every topic the node publishes."""
+
+COMMANDS = (
+    Command('~/cmd_force', 'geometry_msgs/msg/Vector3Stamped', Quality(10),
+            'hold a force [N] on the body named by header.frame_id'),
+    Command('~/cmd_torque', 'geometry_msgs/msg/Vector3Stamped', Quality(10),
+            'hold a torque [N m] on it'),
+    Command('~/cmd_wrench', 'geometry_msgs/msg/WrenchStamped', Quality(10),
+            'hold both on it'),
+    Command('~/cmd_vel', 'geometry_msgs/msg/TwistStamped', Quality(10),
+            'set its velocity [m/s] and rate [rad/s] at once'),
+    Command('~/cmd_states', 'sensor_msgs/msg/MultiDOFJointState', Quality(10),
+            'wrenches and/or twists of many bodies by name'),
+)
+"""Every topic the node takes commands from."""
+
+SERVICES = (
+    Service('~/pause', 'std_srvs/srv/SetBool', 'stop simulated time, or let it go on'),
+    Service('~/step', 'std_srvs/srv/Trigger', 'advance by one period while paused'),
+    Service('~/reset', 'std_srvs/srv/Trigger', 'start again from the scene as loaded'),
+    Service('~/record', 'std_srvs/srv/SetBool', 'start or stop a recording'),
+)
+"""Every service the node offers."""
+
+
+def resolve(name, node='/rigid_sim'):
+    """Return a topic's full name: `~` is the node's name."""
+    return node + name[1:] if name.startswith('~') else name
