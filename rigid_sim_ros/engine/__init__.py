@@ -11,3 +11,9 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
+"""The rigid-body engine: NumPy only, no ROS."""
+
+from rigid_sim_ros.engine.simulation import CommandError, Simulation
+
+__all__ = ['CommandError', 'Simulation']
