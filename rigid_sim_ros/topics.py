@@ -78,7 +78,7 @@ class Published:
     """
 
     name: str
-    type: str
+    type_name: str
     quality: Quality
     encoder: Callable
     when: str
@@ -92,7 +92,7 @@ class Command:
     """A subscribed topic."""
 
     name: str
-    type: str
+    type_name: str
     quality: Quality
     what: str
 
@@ -102,7 +102,7 @@ class Service:
     """A service."""
 
     name: str
-    type: str
+    type_name: str
     what: str
 
 

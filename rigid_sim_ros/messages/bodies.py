@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The state of many bodies in one message: geometry_msgs/PoseArray and sensor_msgs/MultiDOFJointState.
+The state of many bodies in one message: PoseArray and MultiDOFJointState.
 
 Rows are bodies: positions [m] (n, 3), orientations (n, 4) as x, y, z, w, velocities [m/s] and
 [rad/s] and wrenches [N] and [N m] (n, 3). Any strides will do; a transposed view of a
