@@ -54,6 +54,11 @@ class Report(Stepping):
         if 'orientation' in values:
             self._turn[:, :, indices] = rotation.matrix(self.state.orientation[:, indices])
 
+    def advance(self, duration):
+        """See `Stepping`; attitudes are told as the rotations nearest to the matrices."""
+        super().advance(duration)
+        self.state.orientation = _quaternions(_nearest_rotations(self._turn))
+
     def step(self, dt):
         """Integrate, detect, handle: one step of the report, of `dt` [s]."""
         self._integrate(dt)
@@ -76,7 +81,6 @@ class Report(Stepping):
         self._turn = turn + dt * spin
         state.linear_velocity = state.linear_velocity + dt * acceleration
         state.angular_velocity = state.angular_velocity + dt * angular_acceleration
-        state.orientation = rotation.normalize(_nearest_quaternions(self._turn))
 
     def _detect(self, a, b):
         """Return the normal out of a face of a (3,) and the point of b below it, or None."""
@@ -102,7 +106,7 @@ class Report(Stepping):
         turn_a, turn_b = inverse_a @ np.cross(arm_a, normal), inverse_b @ np.cross(arm_b, normal)
         response = (bodies.inverse_mass[a] + bodies.inverse_mass[b]
                     + normal @ np.cross(turn_a, arm_a) + normal @ np.cross(turn_b, arm_b))
-        restitution = mixed_restitution(bodies, a, b)
+        restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
         size = -(1 + restitution) * speed / response
         for body, sign, turn in ((a, -1, turn_a), (b, 1, turn_b)):
             state.linear_velocity[:, body] += sign * size * bodies.inverse_mass[body] * normal
@@ -146,8 +150,25 @@ def _pairs(bodies):
             + [(a, b) for a in range(bodies.moving_count) for b in range(a + 1, count)])
 
 
-def _nearest_quaternions(m):
-    """Return quaternions (4, n), not of unit length, close to matrices (3, 3, n)."""
+def _nearest_rotations(m):
+    """
+    Return the rotations nearest to matrices (3, 3, n): their orthogonal polar factors.
+
+    Newton's iteration m <- (m + m^-T) / 2, Higham 1986, 'Computing the polar decomposition - with
+    applications', section 3; m^-T is the matrix of cofactors over the determinant.
+    """
+    for _ in range(20):
+        cofactors = np.stack([rotation.cross(m[:, (axis + 1) % 3], m[:, (axis + 2) % 3])
+                              for axis in range(3)], axis=1)
+        following = 0.5 * (m + cofactors / rotation.dot(m[:, 0], cofactors[:, 0]))
+        if np.abs(following - m).max(initial=0.0) < 1e-14:
+            break
+        m = following
+    return following
+
+
+def _quaternions(m):
+    """Return the unit quaternions (4, n) of rotation matrices (3, 3, n), Shepperd 1978."""
     xx, yy, zz = m[0, 0], m[1, 1], m[2, 2]
     # four ways to the same quaternion, each exact but for a small divisor: take the largest
     candidates = np.stack((
@@ -156,4 +177,4 @@ def _nearest_quaternions(m):
         np.stack((m[0, 2] + m[2, 0], m[2, 1] + m[1, 2], 1 - xx - yy + zz, m[1, 0] - m[0, 1])),
         np.stack((m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1 + xx + yy + zz))))
     best = np.argmax(np.stack((xx, yy, zz, xx + yy + zz)), axis=0)
-    return np.take_along_axis(candidates, best[None, None], axis=0)[0]
+    return rotation.normalize(np.take_along_axis(candidates, best[None, None], axis=0)[0])
