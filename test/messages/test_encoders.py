@@ -147,7 +147,6 @@ def serialization():
     return pytest.importorskip('rclpy.serialization')
 
 
-
 def message_class(type_name):
     package, _, name = type_name.split('/')
     return getattr(importlib.import_module(package + '.msg'), name)
