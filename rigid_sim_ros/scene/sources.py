@@ -1,0 +1,65 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Where a scene comes from: a file, a shipped scene by its name, or text."""
+
+from pathlib import Path
+
+from rigid_sim_ros.scene.errors import listed, nearest, SceneError
+from rigid_sim_ros.shared_files import config_folder
+
+SUFFIX = '.yaml'
+
+
+def shipped_scenes():
+    """Return the names of the shipped scenes, sorted."""
+    return sorted(path.stem for path in _scenes_folder().glob('*' + SUFFIX))
+
+
+def scene_text(source):
+    """
+    Return (text, label) of a scene given as path, name or text; the label starts messages.
+
+    Text is what has a line break in it; a path has a / or ends in .yaml or .yml (or is a Path).
+    """
+    if isinstance(source, str) and '\n' in source:
+        return source, 'scene'
+    if isinstance(source, Path) or '/' in source or source.endswith((SUFFIX, '.yml')):
+        return _file_text(Path(source)), str(source)
+    path = _scenes_folder() / (source + SUFFIX)
+    names = shipped_scenes()
+    if source not in names:
+        raise SceneError(f'no shipped scene is named {source!r}{nearest(source, names)}; '
+                         f'they are {listed(names)} (a path has a / or ends in {SUFFIX})')
+    return _file_text(path), str(path)
+
+
+def _scenes_folder():
+    return config_folder() / 'scenes'
+
+
+def _file_text(path):
+    try:
+        if path.exists() and not path.is_file():
+            kind = 'a folder' if path.is_dir() else 'not a regular file'
+            raise SceneError(f'{path}: {kind}; a scene is a YAML file')
+        return path.read_bytes().decode('utf-8-sig')
+    except FileNotFoundError:
+        raise SceneError(f'{path}: no such file') from None
+    except UnicodeDecodeError as error:
+        raise SceneError(f'{path}: not UTF-8 text: byte {error.object[error.start]:#04x} '
+                         f'at offset {error.start}') from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, 'strerror', None) or error
+        raise SceneError(f'{path}: cannot be read: {reason}') from None
