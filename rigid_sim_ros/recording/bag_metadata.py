@@ -1,0 +1,125 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+What rosbag2 wants to know about a bag: metadata.yaml beside it, and QoS text in it.
+
+Version 9 of the format, that of ROS 2 Jazzy (rosbag2_storage: yaml.hpp, qos.cpp).
+"""
+
+from dataclasses import dataclass, field
+import os
+
+from rigid_sim_ros.recording.definitions import ROS_DISTRO, type_hash
+import yaml
+
+METADATA_FILE = 'metadata.yaml'
+ROOT_KEY = 'rosbag2_bagfile_information'
+VERSION = 9
+
+_INFINITE = {'sec': 9223372036, 'nsec': 854775807}
+
+
+@dataclass
+class FileSummary:
+    """What is in one file of a bag; times in nanoseconds."""
+
+    path: str
+    start_ns: int = 0
+    end_ns: int = 0
+    counts: dict = field(default_factory=dict)
+    """Number of messages by topic."""
+
+    @property
+    def message_count(self):
+        """Number of messages in all topics."""
+        return sum(self.counts.values())
+
+    def add(self, topic, time_ns, count=1):
+        """Count messages of a topic at a time."""
+        if not self.message_count:
+            self.start_ns = self.end_ns = time_ns
+        self.start_ns = min(self.start_ns, time_ns)
+        self.end_ns = max(self.end_ns, time_ns)
+        self.counts[topic] = self.counts.get(topic, 0) + count
+
+
+def quality_profile(quality):
+    """Return one `offered_qos_profiles` entry for a quality of service."""
+    return {
+        'history': 'keep_last', 'depth': quality.depth, 'reliability': quality.reliability,
+        'durability': quality.durability, 'deadline': dict(_INFINITE), 'lifespan': dict(_INFINITE),
+        'liveliness': 'automatic', 'liveliness_lease_duration': dict(_INFINITE),
+        'avoid_ros_namespace_conventions': False}
+
+
+def quality_text(quality):
+    """Return the YAML text that a channel's metadata has under `offered_qos_profiles`."""
+    return to_yaml([quality_profile(quality)])
+
+
+def bag_metadata(topics, files):
+    """
+    Return what metadata.yaml holds under its root key.
+
+    `topics` have a name, a type_name and a quality; `files` are `FileSummary`, oldest first.
+    """
+    counts = {topic.name: sum(file.counts.get(topic.name, 0) for file in files)
+              for topic in topics}
+    filled = [file for file in files if file.message_count]
+    start = min((file.start_ns for file in filled), default=0)
+    end = max((file.end_ns for file in filled), default=0)
+    return {
+        'version': VERSION,
+        'storage_identifier': 'mcap',
+        'duration': {'nanoseconds': end - start},
+        'starting_time': {'nanoseconds_since_epoch': start},
+        'message_count': sum(counts.values()),
+        'topics_with_message_count': [{
+            'topic_metadata': {
+                'name': topic.name, 'type': topic.type_name, 'serialization_format': 'cdr',
+                'offered_qos_profiles': [quality_profile(topic.quality)],
+                'type_description_hash': type_hash(topic.type_name)},
+            'message_count': counts[topic.name]} for topic in topics],
+        'compression_format': '', 'compression_mode': '',
+        'relative_file_paths': [file.path for file in files],
+        'files': [{
+            'path': file.path,
+            'starting_time': {'nanoseconds_since_epoch': file.start_ns},
+            'duration': {'nanoseconds': file.end_ns - file.start_ns},
+            'message_count': file.message_count} for file in files],
+        'custom_data': {}, 'ros_distro': ROS_DISTRO}
+
+
+def to_yaml(value):
+    """Return YAML in block style, keys in their order."""
+    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, default_flow_style=False)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes out what is there twice, because rosbag2 reads no anchors everywhere."""
+
+    def ignore_aliases(self, data):
+        return True
+
+
+def write_metadata(folder, topics, files):
+    """Write metadata.yaml of a bag in one stroke: whoever reads sees the old or the new one."""
+    path = os.path.join(folder, METADATA_FILE)
+    text = to_yaml({ROOT_KEY: bag_metadata(topics, files)})
+    with open(path + '.new', 'w', encoding='utf-8') as stream:
+        stream.write(text)
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(path + '.new', path)
