@@ -53,7 +53,11 @@ class Contacts:
     """(k,) int: FACE_A, FACE_B, EDGES or ROUND."""
 
     edge_a: np.ndarray
-    """(3, k) unit vector along the edge of a, world axes, where EDGES; zero elsewhere."""
+    """
+    (3, k) unit vector along the edge of a, world axes; zero elsewhere.
+
+    Where EDGES, and where a sphere (ROUND) meets an edge of a.
+    """
 
     edge_b: np.ndarray
     """(3, k), likewise of b."""

@@ -1,0 +1,124 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A list of pairs, sorted once by what kinds of shape meet, to be tested at many poses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_sim_ros.engine.contacts import Contacts, FACE_A, FACE_B
+from rigid_sim_ros.engine.narrow_phase.solids import Solids
+from rigid_sim_ros.engine.narrow_phase.table import PAIRS, PairOfShapes
+
+CHUNK = 1024
+"""Pairs handled at once: more no longer fit the second-level cache (a third slower, measured)."""
+
+_SWAPPED_FEATURE = np.arange(4)
+_SWAPPED_FEATURE[[FACE_A, FACE_B]] = FACE_B, FACE_A
+
+
+@dataclass
+class _Group:
+    """Pairs of the same kinds: a row of the table and the two sides, in its order."""
+
+    row: PairOfShapes
+    swapped: bool
+    """Whether the caller's a is the row's b."""
+
+    where: np.ndarray
+    """(p,) int: which of the caller's pairs these are."""
+
+    a: Solids
+    b: Solids
+
+
+class PairGroups:
+    """
+    Pairs of bodies and planes, ready to be tested.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    pairs_a, pairs_b : (p,) int
+        Indices of bodies, fixed bodies or planes. A pair of two planes is refused with a
+        ValueError.
+
+    """
+
+    def __init__(self, bodies, pairs_a, pairs_b):
+        self.pairs_a = np.asarray(pairs_a, dtype=int)
+        self.pairs_b = np.asarray(pairs_b, dtype=int)
+        self._groups = []
+        for kinds, where in _by_kinds(bodies.kinds, self.pairs_a, self.pairs_b).items():
+            swapped = kinds not in PAIRS
+            row = PAIRS.get(kinds[::-1] if swapped else kinds)
+            if row is None:
+                raise ValueError(f'{kinds[0]} and {kinds[1]} cannot meet; allowed: {list(PAIRS)}')
+            for start in range(0, len(where), CHUNK):
+                part = where[start:start + CHUNK]
+                a = Solids.gather(bodies, self.pairs_a[part])
+                b = Solids.gather(bodies, self.pairs_b[part])
+                self._groups.append(_Group(row, swapped, part, *((b, a) if swapped else (a, b))))
+
+    def find_contacts(self, position, orientation, margin):
+        """
+        Return all contact points with a separation below `margin`, as `Contacts`.
+
+        The points of a pair are next to each other; pairs come in no particular order.
+
+        Parameters
+        ----------
+        position : (3, n) [m]
+        orientation : (4, n) x y z w, body to world
+            Of all bodies and planes.
+        margin : float or (p,) [m]
+
+        """
+        margin = np.broadcast_to(np.asarray(margin, dtype=float), self.pairs_a.shape)
+        parts = []
+        for group in self._groups:
+            contacts = group.row.contacts(group.a.placed(position, orientation),
+                                          group.b.placed(position, orientation),
+                                          margin[group.where])
+            parts.append(swap(contacts) if group.swapped else contacts)
+        return Contacts.join(parts)
+
+    def separations(self, position, orientation):
+        """
+        Return the signed distances [m], (p,), at these poses (as in `find_contacts`).
+
+        Apart: a positive lower bound of the distance, exact where a sphere or a plane is involved.
+        Overlapping: minus the shortest way out.
+        """
+        result = np.empty(len(self.pairs_a))
+        for group in self._groups:
+            result[group.where] = group.row.separation(group.a.placed(position, orientation),
+                                                       group.b.placed(position, orientation))
+        return result
+
+
+def swap(contacts):
+    """Return the same contacts with a and b exchanged."""
+    return Contacts(contacts.body_b, contacts.body_a, contacts.point, -contacts.normal,
+                    contacts.separation, _SWAPPED_FEATURE[contacts.feature],
+                    contacts.edge_b, contacts.edge_a)
+
+
+def _by_kinds(kinds, pairs_a, pairs_b):
+    """Return which pairs, (p,) int, have each combination of kinds that occurs."""
+    where = {}
+    for pair, (a, b) in enumerate(zip(pairs_a.tolist(), pairs_b.tolist())):
+        where.setdefault((kinds[a], kinds[b]), []).append(pair)
+    return {kinds: np.array(pairs) for kinds, pairs in where.items()}
