@@ -19,6 +19,8 @@ SUPPORTED := 3.10 3.11 3.12 3.13
 # Named after what it was made for: another interpreter or another ROS makes another.
 READY := $(VENV)/ready_$(VERSION)_$(or $(ROS),wheels)
 
+PIP_OPTIONS := --quiet --disable-pip-version-check --use-pep517
+
 export PYTHONUNBUFFERED := 1
 
 .PHONY: run test stress benchmark lint clean
@@ -41,26 +43,25 @@ benchmark: $(READY)_peers
 	$(VENV)/bin/rigid_sim_benchmark
 
 $(READY): setup.py setup.cfg pyproject.toml
-	@command -v $(PYTHON) >/dev/null || \
-		{ echo '$(PYTHON) is not installed: give another, e.g. make PYTHON=python3.12' >&2; exit 1; }
-	@echo '$(SUPPORTED)' | grep -qwF '$(VERSION)' || \
-		{ echo '$(PYTHON) is Python $(VERSION), needed is one of $(SUPPORTED): give another,' \
-		'e.g. make PYTHON=python3.12' >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
-		{ echo '$(PYTHON) has no venv: install it, e.g. sudo apt install python3-venv' >&2; exit 1; }
-	rm -rf $(VENV)
+	$(if $(VERSION),,$(error $(PYTHON) is not installed; give another: make PYTHON=python3.12))
+	$(if $(filter $(VERSION),$(SUPPORTED)),,$(error $(PYTHON) is Python $(VERSION), one of \
+		$(SUPPORTED) is needed; give another: make PYTHON=python3.12))
+	$(if $(shell $(PYTHON) -c 'import ensurepip, venv; print(1)' 2>/dev/null),,$(error \
+		$(PYTHON) has no venv; install it: sudo apt install python3-venv))
+	@echo 'Setting up $(VENV), once, which takes about a minute'
+	@rm -rf $(VENV)
 ifdef ROS
-	$(PYTHON) -m venv --system-site-packages $(VENV)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check --editable '.[test]' \
+	@$(PYTHON) -m venv --system-site-packages $(VENV)
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[test]' \
 		"numpy==$$($(PYTHON) -c 'import numpy; print(numpy.__version__)')"
 else
-	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check --editable '.[ros,test]'
+	@$(PYTHON) -m venv $(VENV)
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[ros,test]'
 endif
 	@touch $@
 
 $(READY)_peers: $(READY)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check --editable '.[peers,view]'
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[peers,view]'
 	@touch $@
 
 clean:

@@ -60,7 +60,6 @@ setup(
     maintainer_email='maintainers@rigid-sim-ros.org',
     license='Apache-2.0',
     packages=find_packages(exclude=['test', 'test.*']),
-    package_data={'rigid_sim_ros.recording': ['*.json']},
     package_data={NAME: ['**/*.json']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
