@@ -14,8 +14,9 @@
 
 """Recordings: rosbag2 bags of MCAP files, written and read without ROS."""
 
+from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.recorder import (
-    CLOSED, DROP, FAILED, Recorder, RECORDING, RecorderState, RecordingError, WAIT)
+    CLOSED, DROP, FAILED, Recorder, RecorderState, RECORDING, WAIT)
 
 __all__ = ['CLOSED', 'DROP', 'FAILED', 'RECORDING', 'Recorder', 'RecorderState',
            'RecordingError', 'WAIT']

@@ -21,7 +21,7 @@ Version 9 of the format, that of ROS 2 Jazzy (rosbag2_storage: yaml.hpp, qos.cpp
 from dataclasses import dataclass, field
 import os
 
-from rigid_sim_ros.recording.definitions import ROS_DISTRO, type_hash
+from rigid_sim_ros.recording.definitions import ROS_DISTRO, schema_text, type_hash
 import yaml
 
 METADATA_FILE = 'metadata.yaml'
@@ -29,6 +29,31 @@ ROOT_KEY = 'rosbag2_bagfile_information'
 VERSION = 9
 
 _INFINITE = {'sec': 9223372036, 'nsec': 854775807}
+
+
+@dataclass(frozen=True)
+class BagTopic:
+    """A topic as a bag declares it."""
+
+    name: str
+    type_name: str
+    profiles: str
+    """Quality of service: YAML, a list of `offered_qos_profiles` as rosbag2 has them."""
+
+    type_hash: str
+    definition: str
+    """The message definition with all it depends on."""
+
+    @property
+    def is_latched(self):
+        """Whether late subscribers are to get the last message."""
+        return 'durability: transient_local' in self.profiles
+
+
+def bag_topic(row):
+    """Return the `BagTopic` of a row with a full name, a type_name and a quality."""
+    return BagTopic(row.name, row.type_name, to_yaml([quality_profile(row.quality)]),
+                    type_hash(row.type_name), schema_text(row.type_name))
 
 
 @dataclass
@@ -64,16 +89,11 @@ def quality_profile(quality):
         'avoid_ros_namespace_conventions': False}
 
 
-def quality_text(quality):
-    """Return the YAML text that a channel's metadata has under `offered_qos_profiles`."""
-    return to_yaml([quality_profile(quality)])
-
-
 def bag_metadata(topics, files):
     """
     Return what metadata.yaml holds under its root key.
 
-    `topics` have a name, a type_name and a quality; `files` are `FileSummary`, oldest first.
+    `topics` are `BagTopic`; `files` are `FileSummary`, oldest first.
     """
     counts = {topic.name: sum(file.counts.get(topic.name, 0) for file in files)
               for topic in topics}
@@ -89,8 +109,8 @@ def bag_metadata(topics, files):
         'topics_with_message_count': [{
             'topic_metadata': {
                 'name': topic.name, 'type': topic.type_name, 'serialization_format': 'cdr',
-                'offered_qos_profiles': [quality_profile(topic.quality)],
-                'type_description_hash': type_hash(topic.type_name)},
+                'offered_qos_profiles': yaml.safe_load(topic.profiles),
+                'type_description_hash': topic.type_hash},
             'message_count': counts[topic.name]} for topic in topics],
         'compression_format': '', 'compression_mode': '',
         'relative_file_paths': [file.path for file in files],

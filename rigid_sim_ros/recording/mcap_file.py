@@ -30,8 +30,7 @@ from mcap.opcode import Opcode
 from mcap.records import (
     Attachment, AttachmentIndex, Channel, ChunkIndex, DataEnd, Footer, Header, MessageIndex,
     Metadata, MetadataIndex, Schema, Statistics, SummaryOffset)
-from rigid_sim_ros.recording.bag_metadata import FileSummary, quality_text
-from rigid_sim_ros.recording.definitions import schema_text, type_hash
+from rigid_sim_ros.recording.bag_metadata import FileSummary
 import zstandard
 
 MAGIC = b'\x89MCAP0\r\n'
@@ -63,7 +62,7 @@ class McapFile:
     path : str
         Where; the file must not be there yet.
     topics : sequence
-        Rows with a name, a type_name and a quality; all are declared from the start.
+        Every `BagTopic` it may hold; all are declared from the start.
     compression : str
         A key of `COMPRESSIONS`.
     library : str
@@ -101,9 +100,15 @@ class McapFile:
         """Bytes in the chunk that is not written yet, before compression."""
         return self._chunk_size
 
-    def add(self, channel, time_ns, data):
-        """Add a message on a channel, a row number of the topics from 1, to the open chunk."""
-        sequence = self._sequences[channel]
+    def add(self, channel, time_ns, data, sequence=None):
+        """
+        Add a message on a channel, the number of its topic from 1, to the open chunk.
+
+        The messages of a channel are numbered from 0, so that a gap shows, unless a number is
+        given.
+        """
+        if sequence is None:
+            sequence = self._sequences[channel]
         self._sequences[channel] = sequence + 1
         self._entries.setdefault(channel, []).append((time_ns, self._chunk_size))
         self._pieces.append(_MESSAGE.pack(
@@ -244,15 +249,14 @@ def _packed(records):
 
 def _declare(topics):
     """Return schemas and channels, numbered from 1; topics of one type share a schema."""
-    numbers = {}
-    for topic in topics:
-        numbers.setdefault(topic.type_name, len(numbers) + 1)
-    schemas = [Schema(id=number, name=name, encoding='ros2msg', data=schema_text(name).encode())
-               for name, number in numbers.items()]
+    definitions = {topic.type_name: topic.definition for topic in topics}
+    schemas = [Schema(id=number, name=name, encoding='ros2msg', data=text.encode())
+               for number, (name, text) in enumerate(definitions.items(), 1)]
+    numbers = {schema.name: schema.id for schema in schemas}
     channels = [
         Channel(id=number, topic=topic.name, message_encoding='cdr',
                 schema_id=numbers[topic.type_name],
-                metadata={'offered_qos_profiles': quality_text(topic.quality),
-                          'topic_type_hash': type_hash(topic.type_name)})
+                metadata={'offered_qos_profiles': topic.profiles,
+                          'topic_type_hash': topic.type_hash})
         for number, topic in enumerate(topics, 1)]
     return schemas, channels

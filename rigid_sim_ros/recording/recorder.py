@@ -29,7 +29,9 @@ import os
 from threading import Condition, Thread
 from time import monotonic
 
-from rigid_sim_ros.recording.bag_metadata import bag_metadata, to_yaml, write_metadata
+from rigid_sim_ros.recording.bag_metadata import (
+    bag_metadata, bag_topic, to_yaml, write_metadata)
+from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS, McapFile
 
 RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
@@ -51,10 +53,6 @@ _MESSAGE_OVERHEAD = 200
 
 _CLOSE_SECONDS = 1.5
 """How long closing goes on emptying the queue; the file is finished after that in any case."""
-
-
-class RecordingError(Exception):
-    """A recording that cannot be made or read; the text is one line."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +120,7 @@ class Recorder:
             raise RecordingError(f'compression is {compression!r}; allowed: '
                                  f'{", ".join(COMPRESSIONS)}')
         self.path = os.path.abspath(uri)
-        self._topics = tuple(topics)
+        self._topics = tuple(bag_topic(row) for row in topics)
         self._channels = {topic.name: number for number, topic in enumerate(self._topics, 1)}
         self._compression, self._chunk_seconds = compression, chunk_seconds
         self._max_bytes, self._max_ns = max_bytes, round(max_duration * 1e9)
@@ -265,7 +263,7 @@ class Recorder:
                     self._file.add(latched, time_ns, latched_data)
         self._last_ns = time_ns
         self._file.add(channel, time_ns, data)
-        if self._topics[channel - 1].quality.durability == 'transient_local':
+        if self._topics[channel - 1].is_latched:
             self._latched[channel] = data
         if self._file.chunk_size >= CHUNK_BYTES:
             self._file.close_chunk()
