@@ -217,6 +217,12 @@ COMMANDS = (
 )
 """Every topic the node takes commands from."""
 
+JOURNAL = Command(
+    '~/journal', 'std_msgs/msg/String', Quality(100),
+    'in recordings only: resets and parameters that commands depend on, a line of JSON each; '
+    '`rigid_sim_ros.recording.journal` says what a recording must hold to be run again')
+"""Written to recordings beside what is published and commanded; not on the network."""
+
 SERVICES = (
     Service('~/pause', 'std_srvs/srv/SetBool', 'stop simulated time, or let it go on'),
     Service('~/step', 'std_srvs/srv/Trigger', 'advance by one period while paused'),
