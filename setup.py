@@ -71,7 +71,8 @@ setup(
     install_requires=['numpy>=1.26', 'mcap>=1.2', 'PyYAML>=6.0'],
     extras_require={
         'ros': ROS_WHEELS,
-        'peers': ['mujoco', 'rapier3d', 'pybullet'],
+        # pybullet has no wheels for later Pythons, and takes a quarter of an hour to build.
+        'peers': ['mujoco', 'rapier3d', 'pybullet; python_version < "3.12"'],
         'view': ['matplotlib', 'pillow'],
         'test': ['pytest>=7.4', 'hypothesis', 'scipy', 'mpmath', 'rosbags', 'mcap-ros2-support',
                  'catkin_pkg', *LINTERS],
