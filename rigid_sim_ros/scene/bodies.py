@@ -40,7 +40,7 @@ BODY_KEYS = ('name', *SHAPES, 'mass', 'density', 'inertia', 'position', 'orienta
              'velocity', 'angular_velocity', 'force', 'torque', 'fixed', 'material', 'repeat')
 
 
-def read_bodies(entry, index, label, default_material):
+def read_bodies(entry, index, label, default_material, room=MAX_BODIES):
     """
     Return the bodies, a list, that one entry of `bodies` describes.
 
@@ -54,6 +54,8 @@ def read_bodies(entry, index, label, default_material):
         The file: the start of every message.
     default_material : Material
         The material of the scene, of which the body may override parts.
+    room : int
+        How many bodies the scene has room for.
 
     """
     section = Section(entry, body_label(entry, index, label), BODY_KEYS, required=('name',))
@@ -71,7 +73,7 @@ def read_bodies(entry, index, label, default_material):
         force=section.read('force', motion, Body.force),
         torque=section.read('torque', motion, Body.torque),
         fixed=fixed, material=read_material(section, default_material))
-    return _repeated(section, body) if 'repeat' in section else [body]
+    return _repeated(section, body, room) if 'repeat' in section else [body]
 
 
 def body_label(entry, index, label, kind='body'):
@@ -125,14 +127,14 @@ def _read_orientation(section):
     return section.read('orientation', values.quaternion, Body.orientation)
 
 
-def _repeated(section, body):
+def _repeated(section, body, room):
     """Return the copies: NAME_0, NAME_1, ..., x running fastest, then y, then z."""
     keys = ('count', 'spacing', 'jitter', 'seed')
     repeat = Section(section.values['repeat'], section.label, keys,
                      required=('count', 'spacing'), prefix='repeat.')
     counts = repeat.read('count', values.counts)
     copy_count = counts[0] * counts[1] * counts[2]
-    if copy_count > MAX_BODIES:
+    if copy_count > room:
         raise repeat.refused('count', list(counts), f'at most {MAX_BODIES} bodies in all')
     spacing = repeat.read('spacing', values.vector)
     jitter = repeat.read('jitter', values.not_negative, 0.0)

@@ -18,7 +18,7 @@ from collections import Counter
 from itertools import chain
 import json
 
-from rigid_sim_ros.engine.model import Body, Material, Scene
+from rigid_sim_ros.engine.model import Body, Material
 from rigid_sim_ros.engine.shapes import SHAPES
 from rigid_sim_ros.scene.bodies import SHAPE_KEYS, UNUSED_MASS
 

@@ -86,10 +86,11 @@ def _read_plane(entry, index, label, material):
 def _read_all_bodies(section, label, material):
     bodies = []
     for index, entry in enumerate(_entries(section, 'bodies')):
-        bodies += read_bodies(entry, index, label, material)
-        if len(bodies) > MAX_BODIES:
-            raise SceneError(f'{label}: more than {MAX_BODIES} bodies with those of '
-                             f'{shown(bodies[-1].name)}; must be at most {MAX_BODIES} in all')
+        room = MAX_BODIES - len(bodies)
+        if room == 0:
+            raise SceneError(f'{label}: bodies: more than {MAX_BODIES}; must be at most '
+                             f'{MAX_BODIES} in all')
+        bodies += read_bodies(entry, index, label, material, room)
     return tuple(bodies)
 
 

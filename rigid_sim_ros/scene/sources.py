@@ -33,6 +33,8 @@ def scene_text(source):
 
     Text is what has a line break in it; a path has a / or ends in .yaml or .yml (or is a Path).
     """
+    if not isinstance(source, (str, Path)):
+        raise TypeError(f'a scene is a path, a name, text or a dict, not {type(source).__name__}')
     if isinstance(source, str) and '\n' in source:
         return source, 'scene'
     if isinstance(source, Path) or '/' in source or source.endswith((SUFFIX, '.yml')):
@@ -51,15 +53,25 @@ def _scenes_folder():
 
 def _file_text(path):
     try:
-        if path.exists() and not path.is_file():
-            kind = 'a folder' if path.is_dir() else 'not a regular file'
-            raise SceneError(f'{path}: {kind}; a scene is a YAML file')
-        return path.read_bytes().decode('utf-8-sig')
+        content = _file_bytes(path)
     except FileNotFoundError:
         raise SceneError(f'{path}: no such file') from None
+    except (OSError, ValueError) as error:
+        # a ValueError is what open() has for a path with a NUL character
+        reason = getattr(error, 'strerror', None) or error
+        raise SceneError(f'{path}: cannot be read: {reason}') from None
+    if content is None:
+        kind = 'a folder' if path.is_dir() else 'not a regular file'
+        raise SceneError(f'{path}: {kind}; a scene is a YAML file')
+    try:
+        return content.decode('utf-8-sig')
     except UnicodeDecodeError as error:
         raise SceneError(f'{path}: not UTF-8 text: byte {error.object[error.start]:#04x} '
                          f'at offset {error.start}') from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, 'strerror', None) or error
-        raise SceneError(f'{path}: cannot be read: {reason}') from None
+
+
+def _file_bytes(path):
+    """Return the content of a file, or None of what has none or no end: folders, devices."""
+    if path.exists() and not path.is_file():
+        return None
+    return path.read_bytes()
