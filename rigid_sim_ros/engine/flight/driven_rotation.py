@@ -1,0 +1,227 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Rotation under constant torque: a chain of power series, a stride of time each.
+
+No closed form is known. The chain is extended as far as it has been asked for; each stride starts
+from the state at the end of the one before, which is kept, so that earlier times can be asked for
+again. How a stride is made is in `strides`, one law for equal moments and one for unequal ones.
+"""
+
+from bisect import bisect_right
+
+import numpy as np
+
+from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
+from rigid_sim_ros.engine.flight.packed_columns import PackedColumns
+
+KEPT_STRIDES = 16
+"""Series kept of one body: searches go back and forth within few strides."""
+
+FEW = 8
+"""Up to so many bodies, strides are made one by one in plain floats: faster, measured."""
+
+BEGIN, END, SCALE = 0, 1, 2
+"""Rows of the table: times [s] of a stride, one over its length, then what the law keeps."""
+
+LEADING = 3
+"""Count of rows before those of the law."""
+
+
+class Chain:
+    """The strides of one body: their start times and states, and the series of a few."""
+
+    def __init__(self, law, constants, time, state):
+        """Begin with a state at a time; `constants` and `state` are the law's."""
+        self.law = law
+        self.constants = constants
+        self.times = [time]
+        self.states = [state]
+        self._strides = {}
+
+    def locate(self, time):
+        """Return the number of the stride that holds `time`, or of the last one begun."""
+        return max(bisect_right(self.times, time) - 1, 0)
+
+    def append(self, time, state):
+        """Note where the next stride begins."""
+        self.times.append(time)
+        self.states.append(state)
+
+    def stride(self, number):
+        """Return (length [s], series) of a stride that is begun, made again if not kept."""
+        stride = self._strides.get(number)
+        if stride is None:
+            length, series, state = self.law.stride(
+                FLOATS, self.constants, self.times[number], self.states[number])
+            if number == len(self.times) - 1:
+                self.append(self.times[number] + length, state)
+            if len(self._strides) >= KEPT_STRIDES:
+                self._strides.clear()
+            stride = self._strides[number] = length, series
+        return stride
+
+    def reach(self, time):
+        """Return the number of the stride that holds `time`, extending the chain to it."""
+        while self.times[-1] <= time:
+            self.stride(len(self.times) - 1)
+        return self.locate(time)
+
+
+class DrivenRotations:
+    """The rotations of all bodies under torque that follow one law."""
+
+    def __init__(self, law, body_count):
+        """Make a table of none of 0 to `body_count` - 1."""
+        self._law = law
+        self._chains = {}
+        self._table = PackedColumns(LEADING + law.ROW_COUNT, body_count)
+
+    @property
+    def count(self):
+        """Count of bodies of this kind."""
+        return len(self._chains)
+
+    def begin_one(self, body, time, moments, quaternion, rate, torque):
+        """Start one rotation: unit quaternion, world rate and torque in plain floats."""
+        constants, state = self._law.first(FLOATS, time, moments, quaternion, rate, torque)
+        self._start(body, time, constants, state)
+
+    def begin(self, bodies, time, moments, quaternion, rate, torque):
+        """Start rotations of bodies (k,); arrays (3, k), (4, k)."""
+        constants, state = self._law.first(ARRAYS, time, moments, quaternion, rate, torque)
+        constants = zip(*(np.broadcast_to(row, len(bodies)).tolist() for row in constants))
+        states = zip(*(row.tolist() for row in state))
+        for body, of_body, first in zip(bodies.tolist(), constants, states):
+            self._start(body, time, of_body, first)
+
+    def remove(self, body):
+        """Forget a body."""
+        self._chains.pop(body, None)
+        self._table.remove(body)
+
+    def write_orientations(self, time, indices, out):
+        """Write the quaternions of those of `indices` (k,) that are here to `out` (4, k)."""
+        places, table, fraction = self._current(time, indices)
+        if len(places):
+            out[:, places] = self._law.orientations(ARRAYS, table, fraction)
+
+    def write_rates(self, time, indices, out):
+        """Write the world rates of those of `indices` (k,) that are here to `out` (3, k)."""
+        places, table, fraction = self._current(time, indices)
+        if len(places):
+            out[:, places] = self._law.rates(table, time, fraction)
+
+    def write_rate_bounds(self, indices, start, end, out):
+        """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
+        self._write_bounds(self._law.rate_bound, indices, start, end, out)
+
+    def write_rate_derivative_bounds(self, indices, start, end, out):
+        """Write upper bounds of |dw/dt| to `out` (k,), as `write_rate_bounds`."""
+        self._write_bounds(self._law.rate_derivative_bound, indices, start, end, out)
+
+    def motion_of_one(self, body, time):
+        """Return quaternion and world rate of one body in plain floats."""
+        chain = self._chains[body]
+        number = chain.reach(time)
+        length, series = chain.stride(number)
+        fraction = (time - chain.times[number]) / length
+        return self._law.motion_of_one(FLOATS, chain.constants, series, time, fraction)
+
+    def orientations_of_one(self, body, times):
+        """Return the quaternions of one body at times (K,), (4, K)."""
+        chain = self._chains[body]
+        result = np.empty((4, len(times)))
+        if not len(times):
+            return result
+        chain.reach(float(times.max()))
+        numbers = np.searchsorted(chain.times, times, side='right') - 1
+        for number in np.unique(numbers).tolist():
+            chosen = numbers == number
+            length, series = chain.stride(number)
+            fraction = (times[chosen] - chain.times[number]) / length
+            result[:, chosen] = self._law.orientations_of_one(
+                ARRAYS, chain.constants, series, fraction)
+        return result
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _start(self, body, time, constants, state):
+        self._chains[body] = Chain(self._law, constants, time, state)
+        column = [0.0] * (LEADING + self._law.ROW_COUNT)
+        # a stride that holds no time: it is made when it is first asked for
+        column[END] = -np.inf
+        self._table.put_one(body, column)
+
+    def _current(self, time, indices):
+        """
+        Return where the members are in `indices` (k,), and their strides that hold `time`.
+
+        Places (m,), what the law keeps in the table (rows, m), fractions of the strides (m,).
+        """
+        places, columns = self._table.select(indices)
+        stale = (time < columns[BEGIN]) | (time >= columns[END])
+        if stale.any():
+            bodies = places if indices is None else indices[places]
+            self._load(bodies[stale], time)
+            places, columns = self._table.select(indices)
+        return places, columns[LEADING:], (time - columns[BEGIN]) * columns[SCALE]
+
+    def _load(self, bodies, time):
+        """Put the strides that hold `time` into the table, extending the chains to them."""
+        if len(bodies) <= FEW:
+            for body in bodies.tolist():
+                chain = self._chains[body]
+                number = chain.reach(time)
+                length, series = chain.stride(number)
+                self._table.put_one(body, [
+                    chain.times[number], chain.times[number + 1], 1 / length,
+                    *self._law.rows(chain.constants, series)])
+            return
+        while len(bodies):
+            bodies = bodies[self._extend(bodies, time)]
+
+    def _extend(self, bodies, time):
+        """Make a stride for each of many bodies; return which of them, (k,), need more."""
+        chains = [self._chains[body] for body in bodies.tolist()]
+        numbers = [chain.locate(time) for chain in chains]
+        begin = np.array([chain.times[number] for chain, number in zip(chains, numbers)])
+        state = _rows(chain.states[number] for chain, number in zip(chains, numbers))
+        constants = _rows(chain.constants for chain in chains)
+        length, series, state = self._law.stride(ARRAYS, constants, begin, state)
+        ends = (begin + length).tolist()
+        states = zip(*(row.tolist() for row in state))
+        for place, (chain, number, last) in enumerate(zip(chains, numbers, states)):
+            if number == len(chain.times) - 1:
+                chain.append(ends[place], last)
+            ends[place] = chain.times[number + 1]
+        end = np.array(ends)
+        holds = end > time
+        if holds.any():
+            columns = [begin, end, 1 / length, *self._law.rows(constants, series)]
+            self._table.put(bodies[holds], np.array(columns)[:, holds])
+        return ~holds
+
+    def _write_bounds(self, bound, indices, start, end, out):
+        places, columns = self._table.select(indices)
+        if len(places):
+            constants = _rows(self._chains[body].constants for body in indices[places].tolist())
+            start, end = (np.broadcast_to(time, len(indices))[places] for time in (start, end))
+            out[places] = bound(constants, start, end)
+
+
+def _rows(columns):
+    """Return tuples, one a body, as arrays, one a quantity."""
+    return [np.array(row) for row in zip(*columns)]

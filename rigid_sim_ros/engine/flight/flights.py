@@ -1,0 +1,216 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The motion of bodies between contacts, evaluated at any time and never stepped."""
+
+import numpy as np
+
+from rigid_sim_ros.engine.flight import equal_moments
+from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
+from rigid_sim_ros.engine.flight.fixed_axis import fixed_axes, fixed_axis, FixedAxisRotations
+from rigid_sim_ros.engine.flight.free_rotation import FreeRotations
+from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
+from rigid_sim_ros.engine.flight.plain_rotation import normalized
+from rigid_sim_ros.engine.flight.translations import Translations
+
+FIXED_AXIS, FREE, DRIVEN_EQUAL, DRIVEN_UNEQUAL = range(4)
+"""Kinds of rotation: about an axis that stays, without torque, with it by the moments."""
+
+STILL = (0.0, 0.0, 1.0), 0.0, 0.0
+"""Axis, speed and growth in the table of fixed axes of a body whose rotation is elsewhere."""
+
+
+class Flights:
+    """
+    The motion of n bodies between contacts: every column has its own start time.
+
+    Each body's flight is given by its state at a start time, a constant acceleration of its
+    centre of mass and a constant torque, all in world axes. Poses and velocities at later times
+    are evaluated from these alone, so the error does not depend on how often they are asked for.
+    Before the first `begin` every body rests at the origin with the identity as orientation.
+
+    A body belongs to one of three kinds of rotation, by moments, rates and torque: about a
+    fixed axis (sine and cosine), free (theta functions) or driven (power series, stride by
+    stride). A kind with no body costs nothing.
+    """
+
+    def __init__(self, inertia):
+        """Make flights of n bodies with principal moments `inertia`, (3, n) [kg m^2]."""
+        self._inertia = np.array(inertia, dtype=float)
+        self._moments = self._inertia.T.tolist()
+        count = self._inertia.shape[1]
+        self._kind = np.zeros(count, dtype=np.int8)
+        self._translations = Translations(count)
+        self._fixed_axis = FixedAxisRotations(count)
+        self._others = {FREE: FreeRotations(count),
+                        DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
+                        DRIVEN_UNEQUAL: FreeRotations(count)}
+
+    @property
+    def acceleration(self):
+        """Accelerations of the centres of mass as begun, (3, n) [m/s^2], world axes."""
+        return self._translations.acceleration
+
+    def begin(self, indices, time, position, orientation, linear_velocity, angular_velocity,
+              acceleration, torque):
+        """
+        Start new flights of the bodies `indices`, (k,), at `time` [s], all in world axes.
+
+        Positions (3, k) [m], unit quaternions (4, k), velocities (3, k) [m/s], [rad/s],
+        accelerations of the centre of mass (3, k) [m/s^2] and torques (3, k) [N m]; the last
+        two stay constant through the flight.
+        """
+        if len(indices) == 1:
+            self._begin_one(int(indices[0]), time, *(
+                np.ravel(values).tolist() for values in (
+                    position, orientation, linear_velocity, angular_velocity, acceleration,
+                    torque)))
+            return
+        self._translations.begin(indices, time, position, linear_velocity, acceleration)
+        moments = self._inertia[:, indices]
+        quaternion = np.stack(normalized(ARRAYS, orientation))
+        axis, speed, growth, stays = fixed_axes(moments, quaternion, angular_velocity, torque)
+        self._fixed_axis.begin(indices, quaternion, angular_velocity, axis,
+                               np.where(stays, speed, 0.0), np.where(stays, growth, 0.0))
+        equal = (moments[0] == moments[1]) & (moments[0] == moments[2])
+        driven = np.where(equal, DRIVEN_EQUAL, DRIVEN_UNEQUAL)
+        kind = np.where(stays, FIXED_AXIS, np.where(torque.any(axis=0), driven, FREE))
+        self._leave(indices, kind)
+        for number, rotations in self._others.items():
+            chosen = kind == number
+            if chosen.any():
+                rotations.begin(indices[chosen], time, moments[:, chosen], quaternion[:, chosen],
+                                angular_velocity[:, chosen], torque[:, chosen])
+
+    def poses(self, time, indices=None):
+        """
+        Return positions (3, k) [m] and unit quaternions (4, k) at `time` [s].
+
+        Of the bodies `indices`, (k,), or of all n; no body may start later than `time`.
+        """
+        elapsed = self._elapsed(time, indices)
+        position = np.empty((3, len(elapsed)))
+        orientation = np.empty((4, len(elapsed)))
+        self._translations.positions(elapsed, indices, position)
+        self._fixed_axis.orientations(elapsed, indices, orientation)
+        for rotations in self._present():
+            rotations.write_orientations(time, indices, orientation)
+        return position, orientation
+
+    def velocities(self, time, indices=None):
+        """Return velocities (3, k) [m/s] and rates (3, k) [rad/s] in world axes, as `poses`."""
+        elapsed = self._elapsed(time, indices)
+        rate = self._fixed_axis.rates(elapsed, indices)
+        for rotations in self._present():
+            rotations.write_rates(time, indices, rate)
+        return self._translations.velocities(elapsed, indices), rate
+
+    def translation(self, time, indices=None):
+        """Return positions (3, k) [m] and velocities (3, k) [m/s] only, as `poses`."""
+        elapsed = self._elapsed(time, indices)
+        position = np.empty((3, len(elapsed)))
+        self._translations.positions(elapsed, indices, position)
+        return position, self._translations.velocities(elapsed, indices)
+
+    def poses_at_times(self, index, times):
+        """Return positions (3, K) [m] and unit quaternions (4, K) of one body at times (K,)."""
+        position = self._translations.positions_of_one(index, times)
+        kind = self._kind.item(index)
+        if kind == FIXED_AXIS:
+            elapsed = times - self._translations.start[index]
+            return position, self._fixed_axis.orientations_of_one(index, elapsed)
+        return position, self._others[kind].orientations_of_one(index, times)
+
+    def motion(self, index, time):
+        """
+        Return the motion of one body at `time` [s] in plain floats, world axes.
+
+        Position [m], unit quaternion, velocity [m/s] and rate [rad/s], as tuples.
+        """
+        elapsed, position, velocity = self._translations.motion_of_one(index, time)
+        kind = self._kind.item(index)
+        if kind == FIXED_AXIS:
+            quaternion, rate = self._fixed_axis.motion_of_one(index, elapsed)
+        else:
+            quaternion, rate = self._others[kind].motion_of_one(index, time)
+        return position, quaternion, velocity, rate
+
+    def rate_bound(self, indices, start, end):
+        """
+        Return upper bounds of the rate |w|, (k,) [rad/s], of bodies (k,) from `start` to `end`.
+
+        Rigorous for the times [s] between; infinite if `end` is and the rate grows for ever.
+        """
+        bound = self._fixed_axis.rate_bounds(
+            indices, np.maximum(start - self._translations.start[indices], 0.0),
+            end - self._translations.start[indices])
+        for rotations in self._present():
+            rotations.write_rate_bounds(indices, start, end, bound)
+        return bound
+
+    def rate_derivative_bound(self, indices, start, end):
+        """Return upper bounds of |dw/dt|, (k,) [rad/s^2], in the same way as `rate_bound`."""
+        bound = self._fixed_axis.rate_derivative_bounds(indices)
+        for rotations in self._present():
+            rotations.write_rate_derivative_bounds(indices, start, end, bound)
+        return bound
+
+    def vertex_acceleration_bound(self, indices, radius, start, end):
+        """
+        Return bounds, (k,) [m/s^2], of how points accelerate relative to the centre of mass.
+
+        Of all material points within `radius` (k,) [m] of it: |w x (w x r) + dw/dt x r| is at
+        most (|w|^2 + |dw/dt|) |r|.
+        """
+        rate = self.rate_bound(indices, start, end)
+        return (rate * rate + self.rate_derivative_bound(indices, start, end)) * radius
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _begin_one(self, body, time, position, orientation, velocity, rate, acceleration, torque):
+        """Start a flight of one body, vectors (3,) and (4,) in plain floats."""
+        self._translations.begin_one(body, time, position, velocity, acceleration)
+        moments = self._moments[body]
+        quaternion = normalized(FLOATS, orientation)
+        motion = fixed_axis(moments, quaternion, rate, torque)
+        if motion:
+            kind = FIXED_AXIS
+        elif not any(torque):
+            kind = FREE
+        else:
+            kind = DRIVEN_EQUAL if moments[0] == moments[1] == moments[2] else DRIVEN_UNEQUAL
+        self._fixed_axis.begin_one(body, quaternion, rate, motion or STILL)
+        if kind != self._kind.item(body):
+            self._leave([body], kind)
+        if kind != FIXED_AXIS:
+            self._others[kind].begin_one(body, time, moments, quaternion, rate, torque)
+
+    def _leave(self, indices, kind):
+        """Give bodies (k,) new kinds (k,) and take them out of the tables of their old ones."""
+        changed = np.flatnonzero(self._kind[indices] != kind)
+        for place in changed.tolist():
+            body = int(indices[place])
+            old = self._kind.item(body)
+            if old != FIXED_AXIS:
+                self._others[old].remove(body)
+        self._kind[indices] = kind
+
+    def _elapsed(self, time, indices):
+        """Return the times [s] since the starts of bodies (k,), None for all."""
+        start = self._translations.start
+        return time - (start if indices is None else start[indices])
+
+    def _present(self):
+        """Return the kinds of rotation other than about a fixed axis that some body has."""
+        return [rotations for rotations in self._others.values() if rotations.count]

@@ -1,0 +1,37 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Elementary functions for floats and for arrays under the same names.
+
+A formula written once with `functions.sqrt` and so on serves one body in plain floats, where a
+NumPy call would cost twenty times the arithmetic, and many bodies or many times as arrays.
+"""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+
+FLOATS = SimpleNamespace(
+    sqrt=math.sqrt, hypot=math.hypot, sin=math.sin, cos=math.cos, sinh=math.sinh,
+    cosh=math.cosh, log=math.log, atan=math.atan, copysign=math.copysign, minimum=min,
+    maximum=max, nearest=round, largest=float, where=lambda condition, a, b: a if condition else b)
+"""For plain floats."""
+
+ARRAYS = SimpleNamespace(
+    sqrt=np.sqrt, hypot=np.hypot, sin=np.sin, cos=np.cos, sinh=np.sinh,
+    cosh=np.cosh, log=np.log, atan=np.arctan, copysign=np.copysign, minimum=np.minimum,
+    maximum=np.maximum, nearest=np.rint, largest=np.max, where=np.where)
+"""For arrays, element by element; `largest` is the one that ends an iteration for all."""

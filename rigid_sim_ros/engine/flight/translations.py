@@ -1,0 +1,80 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Where the centres of mass are: parabolas, each with its own start."""
+
+import numpy as np
+
+START, POSITION, VELOCITY, HALF_ACCELERATION, ACCELERATION = (
+    0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13))
+"""Rows of the table."""
+
+
+class Translations:
+    """Centres of mass under constant acceleration; one column a body, all at rest at first."""
+
+    def __init__(self, body_count):
+        self._table = np.zeros((13, body_count))
+        self._accelerates = False
+        self.start = self._table[START]
+        self.acceleration = self._table[ACCELERATION]
+
+    def begin_one(self, body, time, position, velocity, acceleration):
+        """Start a flight of one body; vectors (3,) in plain floats."""
+        x, y, z = acceleration
+        self._table[:, body] = (time, *position, *velocity, 0.5 * x, 0.5 * y, 0.5 * z, x, y, z)
+        self._accelerates = self._accelerates or bool(x or y or z)
+
+    def begin(self, bodies, time, position, velocity, acceleration):
+        """Start a flight of bodies (k,); vectors (3, k)."""
+        self.start[bodies] = time
+        self._table[POSITION, bodies] = position
+        self._table[VELOCITY, bodies] = velocity
+        self._table[HALF_ACCELERATION, bodies] = 0.5 * acceleration
+        self.acceleration[:, bodies] = acceleration
+        self._accelerates = self._accelerates or bool(acceleration.any())
+
+    def positions(self, elapsed, indices, out):
+        """Write the positions [m] of bodies (k,), None for all, to `out` (3, k)."""
+        table = self._columns(indices)
+        if self._accelerates:
+            np.multiply(table[HALF_ACCELERATION], elapsed, out=out)
+            out += table[VELOCITY]
+            out *= elapsed
+        else:
+            np.multiply(table[VELOCITY], elapsed, out=out)
+        out += table[POSITION]
+
+    def velocities(self, elapsed, indices):
+        """Return the velocities [m/s] of bodies (k,), None for all, (3, k)."""
+        table = self._columns(indices)
+        if self._accelerates:
+            return table[ACCELERATION] * elapsed + table[VELOCITY]
+        return table[VELOCITY].copy()
+
+    def positions_of_one(self, body, times):
+        """Return the positions [m] of one body at times (K,), (3, K)."""
+        column = self._table[:, body, None]
+        elapsed = times - column[START]
+        return (column[HALF_ACCELERATION] * elapsed + column[VELOCITY]) * elapsed + column[POSITION]
+
+    def motion_of_one(self, body, time):
+        """Return the time since the start, position and velocity of one body, plain floats."""
+        start, x, y, z, u, v, w, a, b, c = self._table[:10, body].tolist()
+        t = time - start
+        return (t, (x + t * (u + t * a), y + t * (v + t * b), z + t * (w + t * c)),
+                (u + 2 * a * t, v + 2 * b * t, w + 2 * c * t))
+
+    def _columns(self, indices):
+        return self._table if indices is None else self._table.take(indices, axis=1)
