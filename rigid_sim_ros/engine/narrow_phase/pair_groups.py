@@ -20,7 +20,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.contacts import Contacts, FACE_A, FACE_B
 from rigid_sim_ros.engine.narrow_phase.solids import Solids
-from rigid_sim_ros.engine.narrow_phase.table import PAIRS, PairOfShapes
+from rigid_sim_ros.engine.narrow_phase.table import PairOfShapes, PAIRS
 
 CHUNK = 1024
 """Pairs handled at once: more no longer fit the second-level cache (a third slower, measured)."""
