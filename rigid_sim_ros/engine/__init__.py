@@ -14,6 +14,7 @@
 
 """The rigid-body engine: NumPy only, no ROS."""
 
-from rigid_sim_ros.engine.simulation import CommandError, Simulation
+from rigid_sim_ros.engine.commands import CommandError
+from rigid_sim_ros.engine.simulation import Simulation
 
 __all__ = ['CommandError', 'Simulation']

@@ -17,6 +17,8 @@
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.broad_phase import candidate_pairs
+from rigid_sim_ros.engine.narrow_phase import separations
 
 
 def spin_momentum(bodies, orientation, angular_velocity):
@@ -60,3 +62,9 @@ def angular_momentum(bodies, state):
     orbital = rotation.cross(state.position[:, moving], state.linear_velocity[:, moving])
     spin = spin_momentum(bodies, state.orientation, state.angular_velocity)[:, moving]
     return orbital @ (1 / bodies.inverse_mass[moving]) + spin.sum(axis=1)
+
+
+def penetration(bodies, state):
+    """Return how deep the deepest pair of bodies overlaps [m], a float; zero if none does."""
+    a, b = candidate_pairs(bodies, state.position)
+    return float(-separations(bodies, a, b, state.position, state.orientation).min(initial=0.0))

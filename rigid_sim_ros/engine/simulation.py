@@ -14,22 +14,20 @@
 
 """A simulation: what users of the engine hold in their hands."""
 
-from difflib import get_close_matches
+from dataclasses import fields, replace
 from math import inf
 
 import numpy as np
 
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.bodies import bodies_of
+from rigid_sim_ros.engine.commands import (
+    column_of_moving, CommandError, unit_quaternion, vector, vector_rows)
 from rigid_sim_ros.engine.events import EventLog
 from rigid_sim_ros.engine.methods import METHODS
-from rigid_sim_ros.engine.state import state_of
+from rigid_sim_ros.engine.state import State, state_of
 from rigid_sim_ros.engine.work import Work
 from rigid_sim_ros.engine.world import World
-
-
-class CommandError(ValueError):
-    """A command that cannot be carried out; nothing was changed. The text is one line."""
 
 
 class Simulation:
@@ -57,20 +55,21 @@ class Simulation:
             raise ValueError(f'method is {method!r}; allowed: {", ".join(METHODS)}')
         if not 0 < max_step < inf:
             raise ValueError(f'max_step is {max_step!r} s; allowed: a positive number')
-        self.scene = scene
+        self._start = scene
         self.method = method
         self.max_step = float(max_step)
         self.reset()
 
     def reset(self):
-        """Go back to the start: the scene's state, time zero, no collisions, no work done."""
-        bodies = bodies_of(self.scene)
+        """
+        Go back to the start: the scene this was made of, time zero, no collisions, no work done.
+
+        Bodies added since are gone, bodies removed are back.
+        """
         self._events = EventLog()
-        self._world = World(bodies, np.array(self.scene.gravity, dtype=float),
-                            self.scene.impact_law, self.max_step, self._events, Work())
-        self._method = METHODS[self.method](self._world, state_of(self.scene), 0.0)
+        self._work = Work()
         self._collisions = self._events.take()
-        self._index = {name: index for index, name in enumerate(bodies.names)}
+        self._build(self._start, state_of(self._start), 0.0)
 
     # -- time ----------------------------------------------------------------------------------
 
@@ -142,7 +141,12 @@ class Simulation:
     @property
     def work(self):
         """What has been done since the start: a `work.Work` of counters."""
-        return self._world.work
+        return self._work
+
+    @property
+    def scene(self):
+        """The `model.Scene` with the bodies there are now, each as it was at the start."""
+        return self._scene
 
     def energy(self):
         """Return the kinetic and gravitational energy [J], zero at rest at the origin."""
@@ -168,9 +172,9 @@ class Simulation:
 
         Raises `CommandError` if the name is not that of a moving body or a number is not finite.
         """
-        index = self._moving_index(name)
-        force = _vector('force', force)
-        torque = _vector('torque', torque)
+        index = column_of_moving(name, self._index, self.names)
+        force = vector('force', force)
+        torque = vector('torque', torque)
         self._method.set_wrench(np.array([index]), force[:, None], torque[:, None])
 
     def set_velocity(self, name, linear=None, angular=None):
@@ -179,12 +183,12 @@ class Simulation:
 
         Raises `CommandError` as `apply_wrench` does.
         """
-        index = self._moving_index(name)
+        index = column_of_moving(name, self._index, self.names)
         values = {}
         if linear is not None:
-            values['linear_velocity'] = _vector('linear velocity', linear)[:, None]
+            values['linear_velocity'] = vector('linear velocity', linear)[:, None]
         if angular is not None:
-            values['angular_velocity'] = _vector('angular velocity', angular)[:, None]
+            values['angular_velocity'] = vector('angular velocity', angular)[:, None]
         self._set_motion(index, values)
 
     def set_pose(self, name, position=None, orientation=None):
@@ -194,33 +198,68 @@ class Simulation:
         The quaternion is normalised. Raises `CommandError` as `apply_wrench` does, and if the
         quaternion is zero.
         """
-        index = self._moving_index(name)
+        index = column_of_moving(name, self._index, self.names)
         values = {}
         if position is not None:
-            values['position'] = _vector('position', position)[:, None]
+            values['position'] = vector('position', position)[:, None]
         if orientation is not None:
-            quaternion = _vector('orientation', orientation, 4)
-            length = np.sqrt(quaternion @ quaternion)
-            if not 0 < length < inf:
-                raise CommandError(f'orientation is {orientation!r}; allowed: a quaternion '
-                                   'x, y, z, w that is not zero')
-            values['orientation'] = (quaternion / length)[:, None]
+            values['orientation'] = unit_quaternion(orientation)[:, None]
         self._set_motion(index, values)
 
     def apply_wrenches(self, forces, torques):
         """Hold forces [N] and torques [N m], (n, 3), on all moving bodies until replaced."""
         count = self._world.bodies.moving_count
-        forces, torques = _rows('forces', forces, count), _rows('torques', torques, count)
+        forces = vector_rows('forces', forces, count)
+        torques = vector_rows('torques', torques, count)
         self._method.set_wrench(np.arange(count), forces.T, torques.T)
 
     def set_velocities(self, linear, angular):
         """Set the velocities [m/s], [rad/s], (n, 3), of all moving bodies at once."""
         count = self._world.bodies.moving_count
-        linear, angular = _rows('linear', linear, count), _rows('angular', angular, count)
+        linear = vector_rows('linear', linear, count)
+        angular = vector_rows('angular', angular, count)
         self._method.set_motion(np.arange(count), linear_velocity=linear.T,
                                 angular_velocity=angular.T)
 
+    def add(self, body):
+        """
+        Add a `model.Body`, as it is, at once; a row is added to all arrays.
+
+        Raises `CommandError` if the name is taken.
+        """
+        if body.name in self._index:
+            raise CommandError(f'there is already something named {body.name!r}')
+        self._change_scene((*self._scene.bodies, body))
+
+    def remove(self, name):
+        """Take a body, moving or fixed, out at once; raises `CommandError` if there is none."""
+        remaining = tuple(body for body in self._scene.bodies if body.name != name)
+        if len(remaining) == len(self._scene.bodies):
+            raise CommandError(f'no body is named {str(name)[:80]!r}')
+        self._change_scene(remaining)
+
     # -- inside --------------------------------------------------------------------------------
+
+    def _build(self, scene, state, time):
+        """Simulate this scene from this state and time [s] on."""
+        bodies = bodies_of(scene)
+        self._scene = scene
+        self._world = World(bodies, np.array(scene.gravity, dtype=float), scene.impact_law,
+                            self.max_step, self._events, self._work)
+        self._method = METHODS[self.method](self._world, state, time)
+        self._index = {name: index for index, name in enumerate(bodies.names)}
+
+    def _change_scene(self, bodies):
+        """Go on with other bodies; those that were there before go on as they are."""
+        before, index = self._method.state, self._index
+        scene = replace(self._scene, bodies=bodies)
+        state = state_of(scene)
+        names = bodies_of(scene).names
+        kept = [column for column, name in enumerate(names) if name in index]
+        for field in fields(State):
+            getattr(state, field.name)[:, kept] = (
+                getattr(before, field.name)[:, [index[names[column]] for column in kept]])
+        self._build(scene, state, self.time)
 
     def _rows(self, columns):
         """Return the moving bodies' columns of an array (c, n) as rows that cannot be written."""
@@ -231,44 +270,3 @@ class Simulation:
     def _set_motion(self, index, values):
         if values:
             self._method.set_motion(np.array([index]), **values)
-
-    def _moving_index(self, name):
-        """Return the column of a moving body, or raise `CommandError` with the near names."""
-        index = self._index.get(name)
-        if index is None:
-            raise CommandError(f'no body is named {str(name)[:80]!r}{_near(name, self.names)}')
-        if index >= self._world.bodies.moving_count:
-            raise CommandError(f'{name!r} does not move: it is fixed or a plane')
-        return index
-
-
-def _near(name, names):
-    """Return text that tells the names closest to a wrong one, or the first few."""
-    close = get_close_matches(str(name)[:80], names, n=3)
-    if close:
-        return f'; near names: {", ".join(close)}'
-    more = ', ...' if len(names) > 5 else ''
-    return f'; names: {", ".join(names[:5])}{more}'
-
-
-def _vector(what, value, size=3):
-    """Return numbers as an array (size,), or raise `CommandError`."""
-    return _checked(what, value, (size,))
-
-
-def _rows(what, value, count):
-    """Return numbers as an array (count, 3), or raise `CommandError`."""
-    return _checked(what, value, (count, 3))
-
-
-def _checked(what, value, shape):
-    """Return finite numbers as an array of this shape, or raise `CommandError`."""
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        raise CommandError(f'{what} is {value!r:.80}; allowed: numbers, shape {shape}') from None
-    if array.shape != shape:
-        raise CommandError(f'{what} has the shape {array.shape}; allowed: {shape}')
-    if not np.isfinite(array).all():
-        raise CommandError(f'{what} is {value!r:.80}; allowed: finite numbers')
-    return array

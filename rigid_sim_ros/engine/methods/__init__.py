@@ -21,6 +21,7 @@ of it at that time), `advance(duration)`, `set_motion(indices, **quantities)`,
 """
 
 from rigid_sim_ros.engine.methods.report import Report
+from rigid_sim_ros.engine.methods.stepped import Stepped
 
-METHODS = {'report': Report}
+METHODS = {'stepped': Stepped, 'report': Report}
 """Every method by its name."""

@@ -1,0 +1,55 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What hangs together: connected components of bodies by their pairs."""
+
+import numpy as np
+
+
+def component_labels(count, body_a, body_b):
+    """
+    Return a label (count,) for each of `count` nodes: the smallest index of its component.
+
+    The edges are `body_a`, `body_b`, (p,) each. Labels are spread along the edges and then
+    followed to their roots, until nothing changes (Shiloach and Vishkin 1982): a few rounds
+    whatever the shape of the graph.
+    """
+    labels = np.arange(count)
+    while True:
+        smaller = np.minimum(labels[body_a], labels[body_b])
+        spread = labels.copy()
+        np.minimum.at(spread, labels[body_a], smaller)
+        np.minimum.at(spread, labels[body_b], smaller)
+        while not np.array_equal(spread, followed := spread[spread]):
+            spread = followed
+        if np.array_equal(spread, labels):
+            return labels
+        labels = spread
+
+
+def contact_groups(bodies, contacts):
+    """
+    Return `Contacts` as a list of them, one for each set of moving bodies that hang together.
+
+    What is fixed joins nothing.
+    """
+    if not contacts.count:
+        return []
+    a, b = contacts.body_a, contacts.body_b
+    moves = bodies.inverse_mass > 0
+    both = moves[a] & moves[b]
+    labels = component_labels(bodies.count, a[both], b[both])[np.where(moves[a], a, b)]
+    if (labels == labels[0]).all():
+        return [contacts]
+    return [contacts.select(labels == label) for label in np.unique(labels)]

@@ -1,0 +1,150 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The method this engine is for: formulas in flight, impacts at their instant, steps in contact.
+
+A body is in flight, in lasting contact or asleep. In flight its motion is a formula, evaluated
+when it is read and searched for the first touch. At a touch the impulses of all touching points
+are found together. Bodies that go on touching are stepped, island by island, until they part or
+come to rest; what rests is left alone until something wakes it.
+"""
+
+import numpy as np
+
+from rigid_sim_ros.engine.encounters import Encounters
+from rigid_sim_ros.engine.flight import Flights
+from rigid_sim_ros.engine.islands import Islands
+from rigid_sim_ros.engine.methods.flight_state import FlightState
+from rigid_sim_ros.engine.touches import Touches
+
+
+class Exact:
+    """Flight, impacts, lasting contact and sleep, each body and island in its own regime."""
+
+    def __init__(self, world, state, time):
+        self.time = time
+        self._world = world
+        self._force, self._torque = state.force, state.torque
+        self._acceleration = world.acceleration(state.force)
+        self._flights = Flights(world.bodies.inertia)
+        self._touches = Touches(world, self._flights)
+        self._encounters = Encounters(world, self._flights)
+        self._islands = Islands(world, self._flights)
+        self._state = None
+        self._begin(np.arange(world.bodies.count), time, state)
+        self._encounters.fly(np.arange(world.bodies.moving_count), time)
+
+    @property
+    def state(self):
+        """All of the state at this time, evaluated when it is first read."""
+        if self._state is None:
+            self._state = FlightState(self._flights, self.time, self._force, self._torque,
+                                      self._world.work)
+        return self._state
+
+    @property
+    def asleep(self):
+        """Whether each moving body rests and is skipped, (n,) bool."""
+        return self._islands.asleep.copy()
+
+    # -- time ----------------------------------------------------------------------------------
+
+    def advance(self, duration):
+        """Advance by `duration` [s]: flights from touch to touch, islands in steps."""
+        end = self.time + duration
+        while self.time < end:
+            step_end = self._islands.step_end(self.time, end)
+            self._gather(step_end)
+            members = np.flatnonzero(self._islands.touching)
+            step_end = self._fly(step_end)
+            if len(members):
+                self._step(members, step_end)
+            self.time = step_end
+            self._state = None
+
+    def _gather(self, end):
+        """Put those in flight that may reach an island before `end` [s] in with it."""
+        reached = self._islands.reached(self.time, end)
+        if len(reached):
+            self._encounters.hide(reached)
+            self._islands.add(reached)
+
+    def _fly(self, end):
+        """Follow the flights to `end` [s], or to a touch that lasts; return when that is."""
+        while (touch := self._encounters.next_touch(end)) is not None:
+            if self._touch(*touch):
+                return touch[0]
+        return end
+
+    def _touch(self, time, body_a, body_b):
+        """Resolve the touch of pairs (p,) at `time` [s]; return whether any of it lasts."""
+        moving = np.union1d(body_a, body_b)
+        moving = moving[moving < self._world.bodies.moving_count]
+        touch = self._touches.resolve(time, moving, body_a, body_b)
+        position, orientation = self._flights.poses(time, moving)
+        self._flights.begin(moving, time, position, orientation, touch.linear, touch.angular,
+                            self._acceleration[:, moving], self._torque[:, moving])
+        stay, part = moving[touch.stays], moving[~touch.stays]
+        if len(part):
+            self._encounters.fly(part, time, np.array((body_a, body_b)))
+        if len(stay):
+            self._encounters.hide(stay)
+            self._islands.add(stay)
+        return len(stay) > 0
+
+    def _step(self, members, end):
+        """Step these bodies (k,) to `end` [s]; those whose contact has ended fly again."""
+        state = FlightState(self._flights, self.time, self._force, self._torque,
+                            self._world.work)
+        parting = self._islands.advance(members, self.time, end, state)
+        self._begin(members, end, state)
+        if len(parting):
+            self._islands.remove(parting)
+            self._encounters.fly(parting, end)
+
+    # -- commands ------------------------------------------------------------------------------
+
+    def set_motion(self, indices, **values):
+        """Give bodies (k,) new values (., k) of the quantities named, fields of `State`."""
+        state = self.state
+        for quantity, columns in values.items():
+            state.change(quantity, indices, columns)
+        self._restart(indices)
+
+    def set_wrench(self, indices, force, torque):
+        """Hold these forces and torques (3, k) on bodies (k,)."""
+        state = self.state
+        state.change('force', indices, force)
+        state.change('torque', indices, torque)
+        self._force, self._torque = state.force, state.torque
+        self._acceleration = self._world.acceleration(self._force)
+        self._restart(indices)
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _begin(self, indices, time, state):
+        """Begin flights of bodies (k,) at `time` [s] with the columns of a state."""
+        self._flights.begin(
+            indices, time, state.position[:, indices], state.orientation[:, indices],
+            state.linear_velocity[:, indices], state.angular_velocity[:, indices],
+            self._acceleration[:, indices], self._torque[:, indices])
+
+    def _restart(self, indices):
+        """Go on from the changed state of bodies (k,)."""
+        self._begin(indices, self.time, self.state)
+        self._islands.wake(indices)
+        flying = indices[~self._islands.touching[indices]]
+        if len(flying):
+            self._encounters.fly(flying, self.time)
