@@ -1,0 +1,124 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+What contact forces do to bodies: the map between contact axes and motions of bodies.
+
+`ContactRows` holds, for k contacts, the 3k contact axes and the rows J sqrt(M^-1) of the scaled
+Jacobian, so that the response is one product of a matrix with its own transpose: symmetric to the
+last bit, and masses appear nowhere else.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.friction import tangents
+
+
+@dataclass(frozen=True)
+class ContactRows:
+    """The axes of k contacts and what they do to the m moving bodies they touch."""
+
+    touched: np.ndarray
+    """(m,) int: the indices of the moving bodies, ascending."""
+
+    axes: np.ndarray
+    """(3, 3, k): axes[c] are the k world unit vectors (3, k) of row c: normal, tangents."""
+
+    arm_a: np.ndarray
+    """(3, k) [m] from the centre of body a to the contact point."""
+
+    arm_b: np.ndarray
+    """(3, k) [m], likewise of b."""
+
+    body_a: np.ndarray
+    body_b: np.ndarray
+    scaled: np.ndarray
+    """(3k, 6m): the rows of J sqrt(M^-1); per body three linear columns, three in body axes."""
+
+    scale: np.ndarray
+    """(6m,): sqrt(M^-1), inverse masses and principal inverse moments."""
+
+    frames: np.ndarray
+    """(3, 3, m): rotation matrices of the touched bodies."""
+
+    @property
+    def count(self):
+        """Count of contacts."""
+        return len(self.body_a)
+
+    def response(self):
+        """Return the motion across the contacts per force, (3k, 3k)."""
+        return self.scaled @ self.scaled.T
+
+    def motion(self, linear, angular):
+        """
+        Return the motion across the contacts, (3k,), of motions (3, n) of all bodies.
+
+        Velocities give the velocity of b minus that of a at the contact points. Accelerations
+        give their linear part (without the centripetal one).
+        """
+        a, b = self.body_a, self.body_b
+        across = (linear[:, b] + rotation.cross(angular[:, b], self.arm_b)
+                  - linear[:, a] - rotation.cross(angular[:, a], self.arm_a))
+        return self.components(across)
+
+    def components(self, vectors):
+        """Return the components (3k,) in contact axes of world vectors (3, k)."""
+        axes = self.axes
+        return (axes[:, 0] * vectors[0] + axes[:, 1] * vectors[1]
+                + axes[:, 2] * vectors[2]).ravel()
+
+    def world(self, force):
+        """Return world vectors (3, k) of components (3k,) in contact axes."""
+        normal, first, second = force.reshape(3, -1)
+        return self.axes[0] * normal + self.axes[1] * first + self.axes[2] * second
+
+    def change(self, force):
+        """Return the changes (3, m) of linear and angular motion of the touched bodies."""
+        change = ((force @ self.scaled) * self.scale).reshape(-1, 2, 3)
+        return change[:, 0].T, rotation.transform(self.frames, change[:, 1].T)
+
+
+def contact_rows(bodies, contacts, position, orientation):
+    """Return `ContactRows` for contacts and the poses (3, n) and (4, n) of all bodies."""
+    a, b = contacts.body_a, contacts.body_b
+    moving = bodies.moving_count
+    touched = sorted({index for index in (*a.tolist(), *b.tolist()) if index < moving})
+    slots = np.full(bodies.count, len(touched))
+    slots[touched] = np.arange(len(touched))
+    touched = np.array(touched, dtype=int)
+    frames = rotation.matrix(orientation[:, touched])
+    scale = np.sqrt(np.stack((
+        *(bodies.inverse_mass[touched],) * 3, *bodies.inverse_inertia[:, touched])))
+    axes = np.stack((contacts.normal, *tangents(contacts.normal)))
+    arm_a = contacts.point - position[:, a]
+    arm_b = contacts.point - position[:, b]
+    count = len(a)
+    # one column of bodies too many takes what acts on fixed ones
+    rows = np.zeros((3, count, len(touched) + 1, 6))
+    for body, arm, sign in ((a, arm_a, -1.0), (b, arm_b, 1.0)):
+        which = np.flatnonzero(body < moving)
+        slot = slots[body[which]]
+        direction = axes[:, :, which]
+        # rotation.cross wants the components first
+        turn = rotation.cross(arm[:, None, which], direction.transpose(1, 0, 2))
+        turn = rotation.transform_transposed(frames[:, :, None, slot], turn)
+        size = sign * scale[:, slot]
+        rows[:, which, slot, :3] = (direction * size[:3]).transpose(0, 2, 1)
+        rows[:, which, slot, 3:] = (turn * size[3:, None]).transpose(1, 2, 0)
+    scaled = rows[:, :, :-1].reshape(3 * count, -1)
+    return ContactRows(touched, axes, arm_a, arm_b, a, b, scaled, scale.T.ravel(), frames)
