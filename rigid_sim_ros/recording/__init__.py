@@ -14,9 +14,12 @@
 
 """Recordings: rosbag2 bags of MCAP files, written and read without ROS."""
 
+from rigid_sim_ros.recording.bag import Bag, BagMessage
 from rigid_sim_ros.recording.errors import RecordingError
+from rigid_sim_ros.recording.read import read, Recording
 from rigid_sim_ros.recording.recorder import (
     CLOSED, DROP, FAILED, Recorder, RecorderState, RECORDING, WAIT)
+from rigid_sim_ros.recording.recover import recover
 
-__all__ = ['CLOSED', 'DROP', 'FAILED', 'RECORDING', 'Recorder', 'RecorderState',
-           'RecordingError', 'WAIT']
+__all__ = ['Bag', 'BagMessage', 'CLOSED', 'DROP', 'FAILED', 'RECORDING', 'Recorder',
+           'RecorderState', 'Recording', 'RecordingError', 'WAIT', 'read', 'recover']

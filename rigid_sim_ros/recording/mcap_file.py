@@ -20,6 +20,7 @@ bytes of the messages: it takes half the time of that package's own writer, comp
 that floating-point data is worth, and lets a chunk end when its time is up.
 """
 
+import fcntl
 import os
 import struct
 from zlib import crc32
@@ -78,6 +79,7 @@ class McapFile:
     def __init__(self, path, topics, compression, library, attachments=()):
         self._format, self._compress = COMPRESSIONS[compression]
         self._stream = open(path, 'xb', buffering=0)
+        _lock(self._stream)
         self.size = 0
         self.summary = FileSummary(os.path.basename(path))
         self._schemas, self._channels = _declare(topics)
@@ -238,6 +240,23 @@ class McapFile:
         footer = _packed([Footer(summary_start, offset_start, 0)])[:-4]
         footer += struct.pack('<I', crc32(footer, crc32(summary)))
         return data_end + summary + footer + MAGIC
+
+
+def _lock(stream):
+    """Lock a file against recovery until it is closed or its process ends; tell whether it is."""
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass  # a file system without locks: nobody can tell then
+    return True
+
+
+def is_being_written(path):
+    """Tell whether a recorder has the file open."""
+    with open(path, 'rb') as stream:
+        return not _lock(stream)
 
 
 def _packed(records):

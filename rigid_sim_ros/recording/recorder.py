@@ -51,8 +51,11 @@ _BATCH_BYTES = 2**19
 _MESSAGE_OVERHEAD = 200
 """Bytes a queued message costs besides its data."""
 
-_CLOSE_SECONDS = 1.5
+_CLOSE_SECONDS = 1.2
 """How long closing goes on emptying the queue; the file is finished after that in any case."""
+
+_FINISH_SECONDS = 0.4
+"""How long finishing the file may take before closing gives up waiting for it."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +197,7 @@ class Recorder:
             if self._closing_until is None:
                 self._closing_until = monotonic() + _CLOSE_SECONDS
             self._condition.notify_all()
-        self._thread.join(max(0.0, self._closing_until + 0.4 - monotonic()))
+        self._thread.join(max(0.0, self._closing_until + _FINISH_SECONDS - monotonic()))
         if self._thread.is_alive():
             self._fail('the disk does not take the rest; once it does, '
                        f'rigid_sim_recover {self.path} finishes the bag')
@@ -284,13 +287,12 @@ class Recorder:
 
     def _begin_bag(self):
         try:
-            os.makedirs(os.path.dirname(self.path), exist_ok=True)
-            os.mkdir(self.path)
+            if os.path.lexists(self.path):
+                raise RecordingError(f'{self.path} is there already; a recording never replaces '
+                                     'another')
+            os.makedirs(self.path)
             self._open_file()
             write_metadata(self.path, self._topics, self._summaries)
-        except FileExistsError:
-            raise RecordingError(f'{self.path} is there already; a recording never replaces '
-                                 'another') from None
         except OSError as error:
             raise RecordingError(
                 f'cannot record to {self.path}: {error.strerror or error}') from error

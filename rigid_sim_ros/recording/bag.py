@@ -1,0 +1,114 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The files of a bag, as one stream of messages."""
+
+import os
+import re
+from typing import NamedTuple
+
+from rigid_sim_ros.recording.errors import RecordingError
+from rigid_sim_ros.recording.mcap_scan import McapScan
+
+
+class BagMessage(NamedTuple):
+    """A message of a bag."""
+
+    topic: str
+    time_ns: int
+    data: memoryview
+
+
+def bag_files(path):
+    """
+    Return the paths of the MCAP files of a bag in order: a folder, or one file alone.
+
+    The files are those in the folder, by number; metadata.yaml is not asked, since it may be
+    older than they are. Raises `RecordingError` if there is none.
+    """
+    if os.path.isfile(path):
+        return [path]
+    try:
+        names = os.listdir(path)
+    except OSError as error:
+        raise RecordingError(f'cannot read {path}: {error.strerror}') from error
+    files = sorted((name for name in names if name.endswith('.mcap')), key=_by_number)
+    if not files:
+        raise RecordingError(f'no MCAP file in {path}')
+    return [os.path.join(path, name) for name in files]
+
+
+def _by_number(name):
+    number = re.search(r'_(\d+)\.mcap$', name)
+    return (int(number.group(1)[-18:]) if number else -1, name)
+
+
+class Bag:
+    """
+    A bag as far as it can be read.
+
+    `messages` goes through it once; what could not be read is in `damage` after that. Raises
+    `RecordingError` if there is no bag, or nothing in it is an MCAP file.
+    """
+
+    def __init__(self, path):
+        self.path = os.path.abspath(path)
+        self.files = bag_files(self.path)
+        self.damage = []
+        """What could not be read, one line each."""
+
+        self.unfinished = []
+        """Names of the files that do not end as they should."""
+
+        self.topics = {}
+        """`BagTopic` by name."""
+
+        self.attachments = {}
+        """Bytes of the first file's attachments, by name."""
+
+    def messages(self):
+        """Go through all messages in the order in which they were recorded."""
+        unreadable = 0
+        for path in self.files:
+            try:
+                scan = McapScan(path)
+            except RecordingError as error:
+                unreadable += 1
+                if unreadable == len(self.files):
+                    raise
+                self.damage.append(str(error))
+                continue
+            yield from self._messages_of(scan)
+            self._take_over(scan)
+
+    def _messages_of(self, scan):
+        unknown = set()
+        for channel, _, time_ns, data in scan.messages():
+            topic = scan.topics.get(channel)
+            if topic is not None:
+                self.topics.setdefault(topic.name, topic)
+                yield BagMessage(topic.name, time_ns, data)
+            elif channel not in unknown:
+                unknown.add(channel)
+                self.damage.append(f'{scan.name}: messages of the unknown channel {channel} '
+                                   'left out')
+
+    def _take_over(self, scan):
+        self.damage += scan.damage
+        if not scan.finished:
+            self.unfinished.append(scan.name)
+        for topic in scan.topics.values():
+            self.topics.setdefault(topic.name, topic)
+        for attachment in scan.attachments.values():
+            self.attachments.setdefault(attachment.name, attachment.data)
