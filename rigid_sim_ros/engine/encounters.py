@@ -126,8 +126,12 @@ class Encounters:
 
     def _pairs_with(self, indices):
         """Return the bodies a and b, (p,) each, of all pairs of these with what they may meet."""
-        indices = np.sort(indices)
         others = np.flatnonzero(self._solid)
+        if len(indices) == 1:
+            others = others[(others != indices[0]) & (self._flying[indices[0]]
+                                                      | self._flying[others])]
+            return np.minimum(others, indices[0]), np.maximum(others, indices[0])
+        indices = np.sort(indices)
         a = np.repeat(indices, len(others))
         b = np.tile(others, len(indices))
         listed = np.zeros(len(self._solid), dtype=bool)
@@ -167,9 +171,8 @@ class Encounters:
 
     def _guard(self, pairs):
         """Mark listed pairs, given as bodies (2, g), as just told apart."""
-        count = len(self._solid)
-        keys = np.minimum(*pairs) * count + np.maximum(*pairs)
-        self._guarded |= np.isin(self.body_a * count + self.body_b, keys)
+        for a, b in np.sort(pairs, axis=0).T.tolist():
+            self._guarded |= (self.body_a == a) & (self.body_b == b)
 
     def _put(self, body_a, body_b, due, found, guarded):
         self.body_a, self.body_b, self.due = body_a, body_b, due

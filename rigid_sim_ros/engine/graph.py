@@ -47,6 +47,8 @@ def contact_groups(bodies, contacts):
     if not contacts.count:
         return []
     a, b = contacts.body_a, contacts.body_b
+    if bodies.inverse_mass[a[0]] > 0 and (a == a[0]).all():
+        return [contacts]
     moves = bodies.inverse_mass > 0
     both = moves[a] & moves[b]
     labels = component_labels(bodies.count, a[both], b[both])[np.where(moves[a], a, b)]

@@ -14,6 +14,7 @@
 
 """Touches at the end of flights: which points meet, their impulses, and who goes on touching."""
 
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -50,10 +51,13 @@ class Touch(NamedTuple):
     """(m,) bool: which go on touching something."""
 
 
-def stick_speed(bodies, acceleration, indices):
-    """Return the speed [m/s] below which these bodies' (k,) contacts do not part again."""
-    strongest = np.sqrt(rotation.dot(acceleration, acceleration)[indices].max())
-    return STICK_SPEED * np.sqrt(strongest * bodies.bounding_radius[indices].max())
+def stick_speed(bodies, acceleration, contacts):
+    """Return the speed [m/s] below which contacts of these bodies do not part again."""
+    involved = {*contacts.body_a.tolist(), *contacts.body_b.tolist()}
+    involved = [index for index in involved if bodies.inverse_mass[index] > 0]
+    pull = acceleration[:, involved]
+    strongest = sqrt((pull * pull).sum(axis=0).max())
+    return STICK_SPEED * sqrt(strongest * bodies.bounding_radius[involved].max())
 
 
 class Touches:
@@ -76,7 +80,7 @@ class Touches:
         Groups of bodies that have nothing to do with each other are solved by themselves. Impulses
         are noted as events.
         """
-        self._place(time, np.unique(np.concatenate((indices, body_a, body_b))))
+        self._place(time, np.concatenate((indices, body_b)))
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
         self._world.work.narrow_phases += len(body_a)
@@ -97,9 +101,7 @@ class Touches:
     def _apply(self, time, contacts, stays):
         """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
         world = self._world
-        involved = np.union1d(contacts.body_a, contacts.body_b)
-        involved = involved[world.bodies.inverse_mass[involved] > 0]
-        threshold = stick_speed(world.bodies, self._flights.acceleration, involved)
+        threshold = stick_speed(world.bodies, self._flights.acceleration, contacts)
         impact = resolve_impact(world.bodies, contacts, self._position, self._orientation,
                                 self._linear, self._angular, world.impact_law, threshold)
         self._linear[:, impact.touched] += impact.linear

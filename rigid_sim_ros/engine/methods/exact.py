@@ -90,8 +90,9 @@ class Exact:
 
     def _touch(self, time, body_a, body_b):
         """Resolve the touch of pairs (p,) at `time` [s]; return whether any of it lasts."""
-        moving = np.union1d(body_a, body_b)
-        moving = moving[moving < self._world.bodies.moving_count]
+        moving = sorted({index for index in (*body_a.tolist(), *body_b.tolist())
+                         if index < self._world.bodies.moving_count})
+        moving = np.array(moving)
         touch = self._touches.resolve(time, moving, body_a, body_b)
         position, orientation = self._flights.poses(time, moving)
         self._flights.begin(moving, time, position, orientation, touch.linear, touch.angular,
