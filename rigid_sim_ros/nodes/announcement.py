@@ -1,0 +1,75 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What users are told: usage, and at the start where things are and what can be tried."""
+
+from rigid_sim_ros.nodes.parameters import PARAMETERS
+from rigid_sim_ros.topics import COMMANDS, SERVICES
+
+EXECUTABLE = 'rigid_sim_node'
+
+
+def usage():
+    """Return the text of --help."""
+    rows = [(f'{row.name} = {_literal(row.default)}',
+             f'{row.description}; {row.allowed}{", at the start only" if row.read_only else ""}')
+            for row in PARAMETERS]
+    width = max(len(left) for left, _ in rows)
+    lines = '\n'.join(f'  {left:{width}}  {right}' for left, right in rows)
+    return (
+        f'usage: {EXECUTABLE} [--help] [--ros-args [-p NAME:=VALUE] ... '
+        '[--params-file FILE] [-r FROM:=TO] ...]\n\n'
+        'Simulates rigid bodies, takes commands from topics, publishes their motion and '
+        'records it.\n\n'
+        f'parameters and their defaults:\n{lines}\n\n'
+        'example:\n'
+        f'  {EXECUTABLE} --ros-args -p scene:=ten_cubes -p record:=true\n')
+
+
+def _literal(value):
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def welcome(node, simulation, parameters, publications, recording_text):
+    """Return the lines to print when a node is ready; names are those after remapping."""
+    lines = [
+        f'scene {parameters.scene!r}: {_count(simulation)}; method {simulation.method}, '
+        f'states at {parameters.publish_rate:g} Hz, real-time factor '
+        f'{parameters.real_time_factor:g}{", paused" if parameters.start_paused else ""}',
+        recording_text,
+        'publishes ' + ' '.join(publication.topic for publication in publications),
+        'takes     ' + ' '.join(node.resolve_topic_name(row.name) for row in COMMANDS),
+        'services  ' + ' '.join(node.resolve_service_name(row.name) for row in SERVICES)]
+    if simulation.names:
+        lines += ['try, in another terminal:', *('  ' + line for line in examples(
+            node.resolve_topic_name, simulation.names))]
+    return lines
+
+
+def examples(resolve, names):
+    """Return three shell commands that move bodies; `resolve` gives a topic's full name."""
+    first, last = names[0], names[-1]
+    return (
+        f"ros2 topic pub --once {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
+        f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'",
+        f"ros2 topic pub --once {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped "
+        f"'{{header: {{frame_id: {last}}}, vector: {{x: 20.0}}}}'",
+        f"ros2 topic pub --once {resolve('~/cmd_torque')} geometry_msgs/msg/Vector3Stamped "
+        f"'{{header: {{frame_id: {last}}}, vector: {{z: 0.5}}}}'")
+
+
+def _count(simulation):
+    moving = len(simulation.names)
+    fixed = len(simulation.all_names) - moving
+    return f'{moving} moving {"body" if moving == 1 else "bodies"}, {fixed} fixed'

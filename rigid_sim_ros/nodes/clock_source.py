@@ -1,0 +1,71 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Who publishes /clock: one node, or everybody who is told to."""
+
+from rigid_sim_ros.topics import PUBLISHED
+
+ROW = next(row for row in PUBLISHED if row.parameter == 'publish_clock')
+
+
+class ClockSource:
+    """
+    Publishes /clock if the parameter says so, and if it says nothing, while nobody else does.
+
+    Two sources of one clock make every listener's time jump back and forth. A node that was told
+    nothing leaves /clock to a publisher that is already there. If two such nodes find that they
+    both publish, because they started before they saw each other, the one with the larger
+    identifier stops.
+    """
+
+    def __init__(self, node, publications, parameters):
+        self._node = node
+        self._publications = publications
+        self._parameters = parameters
+        self._told = 'publish_clock' in parameters.given
+        parameters.when_changed('publish_clock', self._obey)
+        others = [] if self._told else self._publishers()
+        if others:
+            self._say_left_to(others[0])
+        elif parameters.publish_clock:
+            publications.open(ROW)
+
+    def look(self):
+        """Stop publishing if somebody else does too; call now and then."""
+        if self._told or not self._publications.is_open(ROW):
+            return
+        publishers = self._publishers()
+        first = min(publishers, key=lambda info: bytes(info.endpoint_gid), default=None)
+        if len(publishers) > 1 and not self._is_own(first):
+            self._publications.close(ROW)
+            self._say_left_to(first)
+
+    def _obey(self):
+        self._told = True
+        if self._parameters.publish_clock:
+            self._publications.open(ROW)
+        else:
+            self._publications.close(ROW)
+
+    def _publishers(self):
+        return self._node.get_publishers_info_by_topic(ROW.name)
+
+    def _is_own(self, info):
+        return (info.node_name, info.node_namespace) == (
+            self._node.get_name(), self._node.get_namespace())
+
+    def _say_left_to(self, info):
+        name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+        self._node.get_logger().info(
+            f'{ROW.name} is left to {name}; set publish_clock to publish it too')

@@ -1,0 +1,272 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+What the bodies are commanded to do, and when: velocities at once, wrenches held until replaced.
+
+Nothing here knows ROS: the node makes a `Command` of each message, and whoever simulates a
+recording again makes them of what was recorded. A command takes effect at a simulated time, never
+at a moment of wall time, so the same commands at the same simulated times give the same states to
+the last bit.
+"""
+
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import Optional
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.nodes.counted_warnings import near_names, shown
+from rigid_sim_ros.nodes.pacing import NANOSECONDS
+
+LARGEST_VALUE = 1e9
+"""
+Largest component of a command, in SI units. Far beyond anything a rigid body does, and far enough
+below the end of the number range that products of a few such numbers stay finite.
+"""
+
+FARTHEST_AHEAD = 86400 * NANOSECONDS
+"""How far ahead of simulated time a command may be stamped [ns]. More is wall time by mistake."""
+
+MOST_PENDING = 100_000
+"""Commands that can wait for their time."""
+
+WORLD_AXES, BODY_AXES = 'world', 'body'
+"""The axes of the vectors in a command."""
+
+QUANTITIES = ('force', 'torque', 'linear_velocity', 'angular_velocity')
+
+_HELD = ('force', 'torque')
+
+
+class Refused(ValueError):
+    """A command that is not carried out; nothing was changed."""
+
+    def __init__(self, kind, describe):
+        """Refuse with a kind to count by, and a function that makes the text for the user."""
+        super().__init__(kind)
+        self.kind = kind
+        self.describe = describe
+
+
+@dataclass(frozen=True)
+class Command:
+    """What k named bodies shall do; a quantity that is None is left as it is."""
+
+    names: tuple
+    """Of the bodies, (k,)."""
+
+    force: Optional[np.ndarray] = None
+    """To hold on the centres of mass [N], (k, 3)."""
+
+    torque: Optional[np.ndarray] = None
+    """To hold [N m], (k, 3)."""
+
+    linear_velocity: Optional[np.ndarray] = None
+    """To set at once [m/s], (k, 3)."""
+
+    angular_velocity: Optional[np.ndarray] = None
+    """To set at once [rad/s], (k, 3)."""
+
+    def given(self):
+        """Return the quantities given, as a dict of name and array."""
+        return {name: getattr(self, name) for name in QUANTITIES
+                if getattr(self, name) is not None}
+
+
+class Commands:
+    """
+    Carries out commands on a simulation, each when its simulated time has come.
+
+    Attributes that may be changed between two commands: `axes`, one of `WORLD_AXES` and
+    `BODY_AXES`, and `timeout`, the simulated time [s] after which a wrench gives way to what the
+    scene holds on the body; zero for never.
+    """
+
+    def __init__(self, simulation):
+        self._simulation = simulation
+        self.axes = WORLD_AXES
+        self.timeout = 0.0
+        self.taken = 0
+        """Commands carried out so far."""
+        self.clear()
+
+    def clear(self):
+        """Forget what is pending: the simulation was reset, or has other bodies now."""
+        names = self._simulation.names
+        self._rows = {name: row for row, name in enumerate(names)}
+        self._pending = []
+        self._count = 0
+        self._scene_wrench = {quantity: getattr(self._simulation, quantity).copy()
+                              for quantity in _HELD}
+        # the number of the command that set what is held, so that a later one is not released
+        self._holder = {quantity: np.zeros(len(names), dtype=np.int64) for quantity in _HELD}
+        self._known = ((), None)
+
+    @property
+    def pending(self):
+        """How many commands and releases wait for their time."""
+        return len(self._pending)
+
+    @property
+    def next_time(self):
+        """Simulated time [ns] of the next that is pending, infinite if none is."""
+        return self._pending[0][0] if self._pending else float('inf')
+
+    def carry_out(self, command, now):
+        """Carry out a command at `now` [ns], which is the simulation's time; or raise `Refused`."""
+        self._check(command)
+        self._apply(command, now)
+
+    def schedule(self, command, time, rank, now, then=lambda time: None):
+        """
+        Carry out a command when simulated time reaches `time` [ns]; or raise `Refused`.
+
+        A time that is past is the same as `now` [ns], which is that of the simulation. When the
+        command has been carried out, `then(time)` is called.
+        Commands of one time are carried out in order of `rank`, and of arrival if that is equal
+        too: what arrives over different topics has no order of its own.
+        """
+        self._check(command)
+        if time > now + FARTHEST_AHEAD:
+            raise Refused('too far ahead', lambda: (
+                f'command stamped {time / NANOSECONDS:.6g} s refused: simulated time is '
+                f'{now / NANOSECONDS:.6g} s, and stamps are simulated time (at most '
+                f'{FARTHEST_AHEAD // NANOSECONDS} s ahead)'))
+        if len(self._pending) >= MOST_PENDING:
+            raise Refused('too many pending', lambda: (
+                f'command refused: {MOST_PENDING} commands are already waiting for their time'))
+        time = max(time, now)
+
+        def action():
+            self._apply(command, time)
+            then(time)
+
+        self._push(time, rank, action)
+
+    def carry_out_due(self, now):
+        """Carry out everything pending whose time is `now` [ns] or earlier."""
+        while self.next_time <= now:
+            heappop(self._pending)[-1]()
+
+    def _push(self, time, rank, action):
+        self._count += 1
+        heappush(self._pending, (time, rank, self._count, action))
+
+    def _check(self, command):
+        if not command.names:
+            raise Refused('empty', lambda: 'command refused: it names no body')
+        given = command.given()
+        if not given:
+            raise Refused('empty', lambda: (
+                'command refused: it has neither wrenches nor velocities'))
+        self._rows_of(command.names)
+        for quantity, values in given.items():
+            self._check_values(quantity.replace('_', ' '), command.names, values)
+
+    def _check_values(self, what, names, values):
+        if np.abs(values).max() <= LARGEST_VALUE:
+            return
+        # NaN compares false above, so it ends here too
+        finite = np.isfinite(values).all()
+        bad = ~(np.abs(values) <= LARGEST_VALUE)
+        row = int(np.argmax(bad.any(axis=1)))
+        allowed = 'finite numbers' if not finite else f'at most {LARGEST_VALUE:g} either way'
+        raise Refused('not finite' if not finite else 'too large', lambda: (
+            f'command to {shown(names[row])} refused: {what} is {values[row].tolist()}; '
+            f'allowed: {allowed}'))
+
+    def _rows_of(self, names):
+        """Return the rows (k,) of names, or raise `Refused`; the last names are remembered."""
+        if names is not self._known[0]:
+            for name in names:
+                if name not in self._rows:
+                    raise self._unknown(name)
+            self._known = (names, np.array([self._rows[name] for name in names]))
+        return self._known[1]
+
+    def _unknown(self, name):
+        simulation = self._simulation
+        if not name:
+            return Refused('unknown body', lambda: (
+                'command refused: header.frame_id is empty; it names the body; '
+                + near_names(name, simulation.names)))
+        if name in simulation.all_names:
+            return Refused('fixed body', lambda: (
+                f'command to {shown(name)} refused: it is fixed and takes none'))
+        return Refused('unknown body', lambda: (
+            f'command refused: no body is named {shown(name)}; '
+            + near_names(name, simulation.names)))
+
+    def _apply(self, command, now):
+        self.taken += 1
+        rows = self._rows_of(command.names)
+        given = command.given()
+        if self.axes == BODY_AXES:
+            turn = self._simulation.orientation[rows].T
+            given = {name: rotation.rotate(turn, values.T).T for name, values in given.items()}
+        self._set_velocities(rows, given)
+        held = {name: given[name] for name in _HELD if name in given}
+        if held:
+            self._hold(rows, held)
+            self._count += 1
+            for quantity in held:
+                self._holder[quantity][rows] = self._count
+            if self.timeout > 0:
+                time = now + round(self.timeout * NANOSECONDS)
+                number = self._count
+                self._push(time, -1, lambda: self._release(rows, tuple(held), number))
+
+    def _release(self, rows, quantities, number):
+        """Hold on the rows again what the scene holds, where command `number` is still held."""
+        for quantity in quantities:
+            left = rows[self._holder[quantity][rows] == number]
+            if len(left):
+                self._hold(left, {quantity: self._scene_wrench[quantity][left]})
+
+    def _hold(self, rows, held):
+        """Replace the quantities given, force and torque or one of them, on the rows."""
+        simulation = self._simulation
+        values = {name: held.get(name, getattr(simulation, name)[rows]) for name in _HELD}
+        if _all_in_order(rows, simulation):
+            simulation.apply_wrenches(values['force'], values['torque'])
+            return
+        for row, force, torque in zip(rows, values['force'], values['torque']):
+            simulation.apply_wrench(simulation.names[row], force, torque)
+
+    def _set_velocities(self, rows, given):
+        simulation = self._simulation
+        linear, angular = given.get('linear_velocity'), given.get('angular_velocity')
+        if linear is None and angular is None:
+            return
+        if linear is not None and angular is not None and _all_in_order(rows, simulation):
+            simulation.set_velocities(linear, angular)
+            return
+        for number, row in enumerate(rows):
+            simulation.set_velocity(simulation.names[row],
+                                    None if linear is None else linear[number],
+                                    None if angular is None else angular[number])
+
+
+def _all_in_order(rows, simulation):
+    """Tell whether the rows are those of all bodies, so that one call does for all."""
+    count = len(simulation.names)
+    return len(rows) == count and count > 1 and bool((rows == np.arange(count)).all())
+
+
+def body_command(name, **quantities):
+    """Return the `Command` to one body, with vectors (3,) of `QUANTITIES`."""
+    return Command((name,), **{quantity: np.asarray(vector, dtype=float).reshape(1, 3)
+                               for quantity, vector in quantities.items()})

@@ -1,0 +1,96 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Control of time: a session driven by the wall clock, paused, stepped and reset."""
+
+from rigid_sim_ros.nodes.pacing import Pacer
+
+IDLE = 0.1
+"""Wall time [s] between two looks at the world while paused."""
+
+
+class Control:
+    """
+    Drives a `session.Session` at the pace the parameters ask for.
+
+    Wall times [s] are those of `now()`, a monotonic clock.
+    """
+
+    def __init__(self, session, parameters, stop, now):
+        """Take the parameters as they are and as they will be; see `start`."""
+        self._session = session
+        self._parameters = parameters
+        self._stop = stop
+        self._now = now
+        session.paused = parameters.start_paused
+        self.pacer = Pacer(parameters.real_time_factor, 1 / parameters.publish_rate)
+        self._take_parameters()
+        parameters.when_changed('publish_rate', self._change_pace)
+        parameters.when_changed('real_time_factor', self._change_pace)
+        parameters.when_changed('pause_on_collision', self._take_parameters)
+
+    @property
+    def paused(self):
+        """Whether simulated time stands still."""
+        return self._session.paused
+
+    def start(self):
+        """Let the session's time be due now, and the rest follow."""
+        self.pacer.anchor(self._session.time, self._now())
+
+    def set_paused(self, paused):
+        """Stop simulated time, or let it go on from where it is."""
+        if self._session.paused and not paused:
+            self.start()
+        self._session.paused = paused
+
+    def step(self):
+        """Advance by the parameter `step_duration`, if paused; tell whether it was."""
+        if not self._session.paused:
+            return False
+        self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
+        self._session.paused = True
+        return True
+
+    def reset(self):
+        """Begin again with the scene as loaded, paused or running as before."""
+        self._session.reset(self._parameters.reset_time)
+        self.start()
+
+    def work(self):
+        """
+        Simulate and publish one state if it is due; return when to look again [s].
+
+        A state is computed when it is due and not before, so that a command is seen in the very
+        next state published after it arrived.
+        """
+        session = self._session
+        if session.paused:
+            return self._now() + IDLE
+        time = session.next_time
+        if self._now() < self.pacer.due(time):
+            return self.pacer.due(time)
+        with self._stop.breakable():
+            session.advance()
+        self.pacer.published(time, self._now())
+        return self._now() + IDLE if session.paused else self.pacer.due(session.next_time)
+
+    def _change_pace(self):
+        parameters = self._parameters
+        self._session.set_publish_rate(parameters.publish_rate)
+        self.pacer.change(parameters.real_time_factor, 1 / parameters.publish_rate,
+                          self._session.time, self._now())
+
+    def _take_parameters(self):
+        self._session.pause_on_collision = self._parameters.pause_on_collision

@@ -1,0 +1,185 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The node: a session, the topics and services around it, and nothing of its own besides."""
+
+import time
+
+from rclpy.node import Node
+
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.nodes.announcement import welcome
+from rigid_sim_ros.nodes.clock_source import ClockSource
+from rigid_sim_ros.nodes.command_topics import CommandTopics
+from rigid_sim_ros.nodes.commands import Refused
+from rigid_sim_ros.nodes.control import Control
+from rigid_sim_ros.nodes.diagnostics import Diagnostics
+from rigid_sim_ros.nodes.pacing import NANOSECONDS
+from rigid_sim_ros.nodes.parameters import Parameters, STAMP, unknown_parameter_text
+from rigid_sim_ros.nodes.publishing import Publications
+from rigid_sim_ros.nodes.recording import Recording
+from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
+from rigid_sim_ros.nodes.services import Services
+from rigid_sim_ros.nodes.session import Session
+from rigid_sim_ros.recording import RecordingError
+from rigid_sim_ros.scene import dump_scene, load_scene
+from rigid_sim_ros.topics import Source
+
+NAME = 'rigid_sim'
+
+
+class SimulationNode:
+    """
+    A simulation as a ROS node.
+
+    Whoever has one calls `start` once, then `work` whenever it is due, with callbacks run by an
+    executor in between (`running.drive` does both), and `close` at the end. Several can share a
+    process and an executor.
+    """
+
+    def __init__(self, stop, now=time.monotonic, **options):
+        """
+        Make the node; `options` are those of `rclpy.node.Node`.
+
+        Raises `ParameterError`, `SceneError` and `RecordingError`, with one line for the user.
+        """
+        self.ros = Node(NAME, automatically_declare_parameters_from_overrides=True, **options)
+        try:
+            self._build(stop, now)
+        except BaseException:
+            self.ros.destroy_node()
+            raise
+
+    def _build(self, stop, now):
+        self.parameters = parameters = Parameters(self.ros)
+        logger = self.ros.get_logger()
+        for name in parameters.unknown:
+            logger.warning(unknown_parameter_text(name))
+        scene = load_scene(parameters.scene)
+        simulation = Simulation(scene, parameters.method, parameters.max_step)
+        self._now = now
+        self._source = Source(simulation, parameters.world_frame, dump_scene(scene))
+        self.session = Session(simulation, parameters.publish_rate, self._publish_state)
+        self.control = Control(self.session, parameters, stop, now)
+        self.recording = Recording(self.ros, parameters, self._source)
+        self.refused = CountedWarnings(logger.warning)
+        self.late = CountedWarnings(logger.warning)
+        self.publications = Publications(
+            self.ros, self._source, self.recording, parameters.reliability)
+        self._clock_source = ClockSource(self.ros, self.publications, parameters)
+        self._diagnostics = Diagnostics(
+            self.ros.get_fully_qualified_name(), self.session, self.control, self.refused,
+            self.late, self.recording)
+        self._taken_shown = 0
+        for name in ('command_axes', 'command_timeout'):
+            parameters.when_changed(name, self._change_commands)
+        self._change_commands()
+        CommandTopics(self.ros, self._take_command, self.refused)
+        Services(self.ros, self)
+        if parameters.record:
+            self.recording.start(self.session.time)
+
+    def start(self):
+        """Publish the first state and tell the user what there is."""
+        self.publications.send_scene(self.session.time)
+        self.session.publish_now()
+        for line in welcome(self.ros, self.session.simulation, self.parameters,
+                            self.publications, self.recording.text):
+            self.ros.get_logger().info(line)
+        self.control.start()
+
+    def work(self):
+        """Do what is due; return the wall time [s] at which to call again."""
+        if self.control.paused:
+            self._show_changes()
+        due = self.control.work()
+        if self._diagnostics.due(self._now()):
+            self._clock_source.look()
+            self._diagnostics.complain(self.ros.get_logger().warning)
+            self.recording.report(self.ros.get_logger().error)
+            self.publications.send_diagnostics(
+                self.session.time, lambda: self._diagnostics.statuses(self._now()))
+        return due
+
+    def close(self):
+        """Finish the recording, say so, and leave the ROS graph."""
+        if self.recording.active:
+            self.ros.get_logger().info(self.recording.stop())
+        self.recording.stop()
+        self.ros.destroy_node()
+
+    # -- what services do ----------------------------------------------------------------------
+
+    @property
+    def time_text(self):
+        """Simulated time, for people."""
+        return f'{self.session.time / NANOSECONDS:.9f} s'
+
+    def set_paused(self, paused):
+        """Stop simulated time, or let it go on."""
+        self.control.set_paused(paused)
+
+    def step(self):
+        """Advance by `step_duration`, if paused; tell whether it was."""
+        return self.control.step()
+
+    def reset(self):
+        """Begin again with the scene as loaded."""
+        self.recording.note_reset(self.session.time, self.parameters.reset_time)
+        self.publications.clear_markers(self.session.time)
+        self.control.reset()
+
+    def record(self, wanted):
+        """Start or stop recording; return whether that worked, and a text."""
+        if not wanted:
+            was_active = self.recording.active
+            return was_active, self.recording.stop()
+        try:
+            self.recording.start(self.session.time)
+        except RecordingError as error:
+            return False, str(error)
+        self.publications.record_scene(self.session.time)
+        return True, self.recording.text
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _publish_state(self, time, collisions):
+        self.publications.send_state(time, collisions)
+
+    def _change_commands(self):
+        self.session.commands.axes = self.parameters.command_axes
+        self.session.commands.timeout = self.parameters.command_timeout
+        self.recording.note_parameters(self.session.time)
+
+    def _take_command(self, command, stamp, rank, topic, data):
+        session = self.session
+        now = session.time
+        if self.parameters.command_timing != STAMP or stamp == 0:
+            session.commands.carry_out(command, now)
+            self.recording.write(topic, now, data)
+            return
+        session.commands.schedule(
+            command, stamp, rank, now, lambda time: self.recording.write(topic, time, data))
+        if stamp < now:
+            late = (now - stamp) / NANOSECONDS
+            self.late.add('late', lambda: (
+                f'{topic}: command stamped {stamp / NANOSECONDS:.9f} s came {late:.6f} s of '
+                'simulated time late; it is carried out at the next state'))
+
+    def _show_changes(self):
+        """Show the state to new subscribers, and to all if a command changed it."""
+        taken = self.session.commands.taken
+        if taken != self._taken_shown or self.publications.has_new_subscriber():
+            self.publications.show_state(self.session.time)
+        self._taken_shown = taken

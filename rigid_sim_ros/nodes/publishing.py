@@ -1,0 +1,168 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The published topics: bytes made once, for subscribers and recording alike, or not at all.
+
+A row of `topics.PUBLISHED` is a `Publication` here. Its encoder is made when somebody first wants
+its messages, and a message is made only if there is a subscriber or a recording at that moment.
+"""
+
+from rclpy.qos_overriding_options import QoSOverridingOptions
+
+from rigid_sim_ros.messages import encode_delete_all
+from rigid_sim_ros.nodes.interfaces import interface, quality_of_service
+from rigid_sim_ros.topics import EVERY_SECOND, EVERY_STEP, ON_CHANGE, ON_EVENTS, PUBLISHED
+
+
+class Publication:
+    """One published topic."""
+
+    def __init__(self, node, row, source, recording, reliability):
+        self.row = row
+        self.encoded = 0
+        """Messages made so far."""
+        self._source = source
+        self._recording = recording
+        self._encode = None
+        self._subscribers = 0
+        # what is latched goes to subscribers yet to come
+        self._latched = row.quality.durability == 'transient_local'
+        self._publisher = node.create_publisher(
+            interface(row.type_name), row.name, quality_of_service(row.quality, reliability),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies())
+
+    @property
+    def topic(self):
+        """The full name of the topic, after remapping."""
+        return self._publisher.topic_name
+
+    @property
+    def heard(self):
+        """Whether publishing a message reaches anybody."""
+        return self._latched or self._publisher.get_subscription_count() > 0
+
+    def send(self, time, to_subscribers=True, to_recording=True):
+        """Make the message of simulated time `time` [ns] for whoever wants it."""
+        heard = to_subscribers and self.heard
+        recorded = to_recording and self._recording.wants(self.row)
+        if not heard and not recorded:
+            return
+        if self._encode is None:
+            self._encode = self.row.encoder(self._source)
+        data = self._encode(time)
+        self.encoded += 1
+        if heard:
+            self._publisher.publish(data)
+        if recorded:
+            self._recording.write(self.row.name, time, data)
+
+    def send_bytes(self, data):
+        """Publish a message made elsewhere, to subscribers only."""
+        if self.heard:
+            self._publisher.publish(data)
+
+    def forget_bodies(self):
+        """Make the encoder anew for the next message: the source has other bodies now."""
+        self._encode = None
+
+    def has_new_subscriber(self):
+        """Tell whether there are more subscribers than when this was last asked."""
+        before, self._subscribers = self._subscribers, self._publisher.get_subscription_count()
+        return self._subscribers > before
+
+    def destroy(self, node):
+        """Stop publishing the topic."""
+        node.destroy_publisher(self._publisher)
+
+
+class Publications:
+    """All published topics of a node."""
+
+    def __init__(self, node, source, recording, reliability):
+        """Create a publisher for every row that no parameter can turn off."""
+        self._node = node
+        self._source = source
+        self._recording = recording
+        self._reliability = reliability
+        self._publications = {}
+        for row in PUBLISHED:
+            if row.parameter is None:
+                self.open(row)
+
+    def __iter__(self):
+        return iter(self._publications.values())
+
+    def open(self, row):
+        """Publish a row's topic from now on."""
+        if row.name not in self._publications:
+            # only the streams: losing an event or the scene is never what anybody wants
+            reliability = self._reliability if row.when == EVERY_STEP and not row.parameter else None
+            self._publications[row.name] = Publication(
+                self._node, row, self._source, self._recording, reliability)
+
+    def is_open(self, row):
+        """Tell whether a row's topic is published."""
+        return row.name in self._publications
+
+    def close(self, row):
+        """Publish a row's topic no longer."""
+        publication = self._publications.pop(row.name, None)
+        if publication is not None:
+            publication.destroy(self._node)
+
+    def send_state(self, time, collisions):
+        """Publish what belongs to a state: the state, and the events since the last one."""
+        self._source.collisions = collisions
+        self._send(EVERY_STEP, time)
+        if len(collisions):
+            self._send(ON_EVENTS, time)
+
+    def show_state(self, time):
+        """Publish the state once more, to subscribers only: it is in the recording already."""
+        self._send(EVERY_STEP, time, to_recording=False)
+
+    def send_scene(self, time):
+        """Publish what only changes with the scene, and make all encoders anew."""
+        for publication in self:
+            publication.forget_bodies()
+        self._send(ON_CHANGE, time)
+
+    def record_scene(self, time):
+        """Write to the recording what only changes with the scene: it has just been started."""
+        self._send(ON_CHANGE, time, to_subscribers=False)
+
+    def send_diagnostics(self, time, statuses):
+        """Publish what is sent each second of wall time; `statuses()` is called if it is read."""
+        if any(publication.heard for publication in self.of(EVERY_SECOND)):
+            self._source.statuses = statuses()
+            self._send(EVERY_SECOND, time)
+
+    def clear_markers(self, time):
+        """Remove every marker from the screens of those who watch."""
+        for publication in self:
+            if publication.row.type_name == 'visualization_msgs/msg/MarkerArray':
+                publication.send_bytes(encode_delete_all(time, self._source.frame_id))
+
+    def has_new_subscriber(self):
+        """Tell whether somebody subscribed to a stream since this was last asked."""
+        return any([publication.has_new_subscriber() for publication in self.of(EVERY_STEP)])
+
+    def of(self, when):
+        """Return the publications sent at one of the occasions in `topics`, as a list."""
+        return [publication for publication in self if publication.row.when == when]
+
+    def _send(self, when, time, **to):
+        for publication in self.of(when):
+            publication.send(time, **to)

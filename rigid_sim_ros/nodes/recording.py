@@ -1,0 +1,147 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Recording from the node: what is published, what was commanded, and what else a rerun needs.
+
+The `Recorder` knows topics and bytes; this decides which topics, where to, and what is said.
+"""
+
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+from rigid_sim_ros.messages import DiagnosticStatus, ERROR, OK, WARN
+from rigid_sim_ros.recording import Recorder, RECORDING, RecordingError
+from rigid_sim_ros.recording.journal import encode_parameters, encode_reset
+from rigid_sim_ros.topics import COMMANDS, EVERY_SECOND, JOURNAL, PUBLISHED
+
+FOLDER = 'recordings'
+"""Where recordings go, below the working folder, if no path is given."""
+
+_NOT_RECORDED = ('visualization_msgs/msg/MarkerArray',)
+"""Types of what shows the poses a second time, at fifteen times their size."""
+
+
+class Recording:
+    """At most one recording at a time."""
+
+    def __init__(self, node, parameters, source):
+        """Record what belongs to a `rclpy` node and a `topics.Source`, when told to."""
+        self._node = node
+        self._parameters = parameters
+        self._source = source
+        self._names = {row.name: node.resolve_topic_name(row.name)
+                       for row in (*PUBLISHED, *COMMANDS, JOURNAL)}
+        self._recorded = frozenset(
+            row.name for row in PUBLISHED
+            if row.when != EVERY_SECOND and row.type_name not in _NOT_RECORDED)
+        self._recorder = None
+        self._count = 0
+        self._reported = ''
+
+    @property
+    def active(self):
+        """Whether messages are recorded."""
+        return self._recorder is not None and not self._recorder.error
+
+    @property
+    def text(self):
+        """Where it records, as a phrase."""
+        if self._recorder is None:
+            return 'not recording'
+        return self._recorder.error or f'recording to {self._recorder.path}'
+
+    def start(self, time):
+        """
+        Begin a recording at simulated time `time` [ns].
+
+        Raises `RecordingError` if it cannot be made, or if there is one already.
+        """
+        if self.active:
+            raise RecordingError(f'already {self.text}')
+        self.stop()
+        self._recorder = Recorder(
+            self._next_path(), self._rows(),
+            compression=self._parameters.record_compression,
+            when_full=self._parameters.record_when_full, scene=self._source.scene_text,
+            options=self._options())
+        self.note_parameters(time)
+
+    def stop(self):
+        """Finish the recording, if there is one, and say how it went, as a phrase."""
+        if self._recorder is None:
+            return 'not recording'
+        recorder, self._recorder = self._recorder, None
+        state = recorder.close()
+        lost = f', {state.dropped_count} lost' if state.dropped_count else ''
+        return state.error or (f'recorded {state.message_count} messages, '
+                               f'{state.byte_count / 1e6:.1f} MB{lost}, to {state.path}')
+
+    def wants(self, row):
+        """Tell whether messages of a row of `PUBLISHED` are recorded now."""
+        return self._recorder is not None and row.name in self._recorded and self.active
+
+    def write(self, name, time, data):
+        """Record a message of a topic, named as in `topics`, at simulated time `time` [ns]."""
+        if self._recorder is not None:
+            self._recorder.write(self._names[name], time, data)
+
+    def note_parameters(self, time):
+        """Write down, for a rerun, the parameters that commands depend on."""
+        self.write(JOURNAL.name, time, encode_parameters(
+            self._parameters.command_axes, self._parameters.command_timeout))
+
+    def note_reset(self, time, time_from_zero):
+        """Write down, for a rerun, that the scene begins again."""
+        self.write(JOURNAL.name, time, encode_reset(time_from_zero))
+
+    def report(self, log_error):
+        """Say by `log_error(text)`, once, that the recording failed; call now and then."""
+        error = self._recorder.error if self._recorder is not None else ''
+        if error and error != self._reported:
+            log_error(error)
+        self._reported = error
+
+    def status(self, node_name):
+        """Return the status for `/diagnostics`."""
+        name = f'{node_name}: recording'
+        if self._recorder is None:
+            return DiagnosticStatus(OK, name, 'not recording')
+        state = self._recorder.state()
+        level = ERROR if state.phase != RECORDING else WARN if state.dropped_count else OK
+        return DiagnosticStatus(level, name, self.text, {
+            'path': state.path, 'messages written': state.message_count,
+            'bytes written': state.byte_count, 'messages waiting': state.queued_count,
+            'messages lost': state.dropped_count})
+
+    def _next_path(self):
+        """Return a path no recording of this run has had."""
+        given = self._parameters.record_path
+        if not given:
+            scene = Path(self._parameters.scene).stem
+            given = f'{FOLDER}/{scene}_{datetime.now():%Y_%m_%d-%H_%M_%S}'
+        self._count += 1
+        return given if self._count == 1 else f'{given}_{self._count}'
+
+    def _rows(self):
+        rows = [row for row in PUBLISHED if row.name in self._recorded]
+        return [replace(row, name=self._names[row.name]) for row in (*rows, *COMMANDS, JOURNAL)]
+
+    def _options(self):
+        simulation, parameters = self._source.simulation, self._parameters
+        return {
+            'names': simulation.names, 'all_names': simulation.all_names,
+            'method': simulation.method, 'max_step': simulation.max_step,
+            'publish_rate': parameters.publish_rate, 'world_frame': parameters.world_frame}

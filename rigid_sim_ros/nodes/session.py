@@ -1,0 +1,128 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+A simulation on the node's clock: integer nanoseconds, states at whole periods, commands on time.
+
+Nothing here knows ROS or wall time, so a run is the same however fast it is driven.
+"""
+
+import numpy as np
+
+from rigid_sim_ros.engine.events import BEGIN, IMPACT
+from rigid_sim_ros.nodes.commands import Commands
+from rigid_sim_ros.nodes.pacing import NANOSECONDS, PublishGrid
+
+
+class Session:
+    """
+    Drives a simulation from state to state and hands each to `publish`.
+
+    Parameters
+    ----------
+    simulation : engine.Simulation
+        What to drive.
+    publish_rate : float
+        States per second of simulated time [Hz].
+    publish : callable
+        Called as `publish(time, collisions)` when the simulation stands at a time [ns] that is
+        to be published, with the events (dtype `events.COLLISION`) since the last one.
+
+    """
+
+    def __init__(self, simulation, publish_rate, publish):
+        self.simulation = simulation
+        self.commands = Commands(simulation)
+        self.paused = False
+        self.pause_on_collision = False
+        self._publish = publish
+        self._grid = PublishGrid(publish_rate)
+        self._time = 0
+        # node time at which the simulation's own clock was zero; not zero after a reset that
+        # keeps time running
+        self._origin = 0
+
+    @property
+    def time(self):
+        """Simulated time of the node [ns]: the stamp of the state the simulation is in."""
+        return self._time
+
+    @property
+    def next_time(self):
+        """The next time [ns] to be published."""
+        return self._grid.after(self._time)
+
+    def set_publish_rate(self, rate):
+        """Publish `rate` states per simulated second [Hz], counted from now."""
+        self._grid = PublishGrid(rate, self._time)
+
+    def publish_now(self):
+        """Publish the state as it is, without simulating; for when it changed otherwise."""
+        self._publish(self._time, self.simulation.collisions[:0])
+
+    def advance(self):
+        """Simulate to the next time on the grid, publish it, and pause if that is asked for."""
+        self.advance_to(self.next_time)
+
+    def step(self, duration, stop=lambda: False):
+        """
+        Simulate `duration` [s], rounded to nanoseconds, and publish every state on the way.
+
+        The last state is published too if it is not on the grid. `stop()` is asked between two
+        states; if it is true the rest is left out.
+        """
+        end = self._time + max(1, round(duration * NANOSECONDS))
+        while self._time < end and not stop():
+            self.advance_to(min(self.next_time, end))
+
+    def reset(self, time_from_zero):
+        """
+        Begin again with the scene as loaded, and publish that; pending commands are dropped.
+
+        Simulated time runs on, or begins at zero again.
+        """
+        self.simulation.reset()
+        self.commands.clear()
+        if time_from_zero:
+            self._time = 0
+        self._origin = self._time
+        self.publish_now()
+
+    def advance_to(self, end):
+        """Simulate to `end` [ns], carry out what falls due before it, and publish."""
+        parts = []
+        while True:
+            self.commands.carry_out_due(self._time)
+            stop = min(end, self.commands.next_time)
+            self._simulate_to(stop)
+            parts.append(self.simulation.collisions)
+            if stop == end:
+                break
+        collisions = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        if len(collisions) and self._origin:
+            collisions = collisions.copy()
+            collisions['time'] += self._origin / NANOSECONDS
+        self.paused |= self.pause_on_collision and _touched(collisions)
+        self._publish(self._time, collisions)
+
+    def _simulate_to(self, time):
+        # from the difference to the simulation's own clock, so that rounding does not add up
+        target = (time - self._origin) / NANOSECONDS
+        self.simulation.advance(max(0.0, target - self.simulation.time))
+        self._time = time
+
+
+def _touched(collisions):
+    """Tell whether two bodies came together in these events."""
+    return bool(np.isin(collisions['kind'], (IMPACT, BEGIN)).any())

@@ -1,0 +1,77 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Stopping on SIGINT and SIGTERM: once, in order, whatever is pressed how often."""
+
+from contextlib import contextmanager
+import signal
+
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+PATIENCE = 1.0
+"""Wall time [s] an advance may go on after a signal; then it is broken off."""
+
+
+class Interrupted(Exception):
+    """An advance was broken off because the process has to end."""
+
+
+class StopRequest:
+    """
+    Becomes `requested` on the first SIGINT or SIGTERM; every further one changes nothing.
+
+    Python's own KeyboardInterrupt would be raised anywhere, also while a recording is closed, and
+    ROS's handlers shut the context down under whoever is publishing: so neither is used. Ctrl-C
+    pressed twice, and a launch system that passes on a signal the process already has, both send
+    two.
+    """
+
+    def __init__(self):
+        self.requested = False
+        self._breakable = False
+
+    def install(self):
+        """Take over the signals; only the main thread can."""
+        for number in STOP_SIGNALS:
+            signal.signal(number, self._request)
+        signal.signal(signal.SIGALRM, self._break_off)
+
+    def ignore(self):
+        """
+        Let signals do nothing from now on, also while Python itself ends.
+
+        Python gives signals with a handler back their deadly default on its way out.
+        """
+        self.requested = True
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        for number in STOP_SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+
+    @contextmanager
+    def breakable(self):
+        """Let `Interrupted` be raised in the block `PATIENCE` after a stop was requested."""
+        self._breakable = True
+        try:
+            yield
+        finally:
+            self._breakable = False
+
+    def _request(self, number, frame):
+        if not self.requested:
+            self.requested = True
+            signal.setitimer(signal.ITIMER_REAL, PATIENCE)
+
+    def _break_off(self, number, frame):
+        if self._breakable:
+            raise Interrupted

@@ -1,0 +1,141 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The node as a process: how it starts, what it says, how it ends."""
+
+import random
+import signal
+import time
+
+import pytest
+
+pytest.importorskip('rclpy')
+
+from node_harness import Client, NodeProcess  # noqa: E402, I100
+from rigid_sim_ros.nodes.parameters import PARAMETERS  # noqa: E402
+from rigid_sim_ros.topics import COMMANDS, PUBLISHED, SERVICES  # noqa: E402
+import yaml  # noqa: E402
+
+LONGEST_END = 2.0
+"""Wall time [s] in which a process has to end after a signal."""
+
+
+@pytest.mark.parametrize('signals', [
+    (signal.SIGINT,), (signal.SIGTERM,), (signal.SIGINT, signal.SIGINT),
+    (signal.SIGINT, signal.SIGTERM, signal.SIGINT)])
+def test_signals_end_it_in_order(tmp_path, signals):
+    with NodeProcess(tmp_path, scene='ten_cubes', record=False) as process:
+        process.wait_for_text('try, in another terminal')
+        time.sleep(random.uniform(0, 0.1))
+        code, duration = process.stop(*signals, gap=random.uniform(0.0, 0.05))
+        assert (code, duration < LONGEST_END) == (0, True), process.error
+        assert 'Traceback' not in process.error
+
+
+def test_signal_while_it_starts(tmp_path):
+    for number, delay in enumerate((0.15, 0.4, 0.8)):
+        with NodeProcess(tmp_path / str(number), scene='ten_cubes') as process:
+            # not before Python itself is up: until then nobody can catch a signal
+            time.sleep(delay)
+            process.process.send_signal(signal.SIGTERM)
+            code = process.wait()
+            assert code in (0, -signal.SIGTERM), process.error
+            assert 'Traceback' not in process.error
+
+
+def test_start_tells_where_everything_is(tmp_path):
+    with NodeProcess(tmp_path, scene='report_dynamics') as process, Client(process) as client:
+        process.wait_for_text('try, in another terminal')
+        process.wait_for_text('cmd_torque geometry_msgs')
+        for row in (*PUBLISHED, *COMMANDS, *SERVICES):
+            assert client.topic(row.name) in process.error
+        commands = [line.split(': ', 1)[1].strip() for line in process.error.splitlines()
+                    if 'ros2 topic pub' in line]
+        assert len(commands) == 3
+        scene = client.listen('~/scene', durability='transient_local')
+        text = client.spin_until(lambda: scene and scene[0].data, 'the latched scene')
+        names = [body['name'] for body in yaml.safe_load(text)['bodies']]
+        for line in commands:
+            assert line.split('frame_id: ')[1].split('}')[0] in names
+
+
+BAD_SCENES = {
+    'no such name': (None, 'no_such_scene', ['no_such_scene', 'ten_cubes']),
+    'no such file': (None, '/nowhere/scene.yaml', ['/nowhere/scene.yaml']),
+    'unknown key': ('bodies:\n  - {name: a, cube: {edge: 1}, mass: 1, colour: red}\n', None,
+                    ["a", 'colour']),
+    'NaN': ('bodies:\n  - {name: a, cube: {edge: .nan}, mass: 1}\n', None, ['a', 'edge', 'nan']),
+    'negative mass': ('bodies:\n  - {name: a, cube: {edge: 1}, mass: -1}\n', None,
+                      ['a', 'mass', '-1']),
+    'wrong shape': ('bodies:\n  - {name: a, cube: {edge: 1}, mass: 1, position: [1, 2]}\n', None,
+                    ['a', 'position']),
+    'duplicate name': ('bodies:\n' + 2 * '  - {name: a, cube: {edge: 1}, mass: 1}\n', None,
+                       ['a']),
+    'not YAML': ('bodies: [}', None, ['scene.yaml']),
+}
+
+
+@pytest.mark.parametrize('text, scene, expected', BAD_SCENES.values(), ids=BAD_SCENES)
+def test_bad_scene_is_one_line_and_exit_code_2(tmp_path, text, scene, expected):
+    if text is not None:
+        scene = tmp_path / 'scene.yaml'
+        scene.write_text(text)
+    with NodeProcess(tmp_path, scene=scene) as process:
+        assert process.wait() == 2
+        lines = process.error.splitlines()
+        assert len(lines) == 1, lines
+        assert all(word in lines[0] for word in expected), lines[0]
+        assert process.output == ''
+
+
+@pytest.mark.parametrize('name, value, expected', [
+    ('publish_rate', -5.0, 'parameter publish_rate is -5.0; allowed: 0.1 to 10000 Hz'),
+    ('publish_rate', 'fast', "parameter publish_rate is 'fast'; allowed: 0.1 to 10000 Hz"),
+    ('real_time_factor', '.nan', 'parameter real_time_factor is nan; allowed: 0 to 100'),
+    ('command_axes', 'bodies', "parameter command_axes is 'bodies'; allowed: world, body"),
+    ('start_paused', 3, 'parameter start_paused is 3; allowed: true, false'),
+    ('scene', 7, 'parameter scene is 7; allowed: text')])
+def test_bad_parameter_is_one_line_and_exit_code_2(tmp_path, name, value, expected):
+    with NodeProcess(tmp_path, **{name: value}) as process:
+        assert process.wait() == 2
+        assert process.error == f'rigid_sim_node: {expected}\n'
+
+
+def test_bad_ros_arguments_are_one_line_and_exit_code_2(tmp_path):
+    for number, (arguments, word) in enumerate([
+            (['--ros-args', '-p', 'nonsense'], 'nonsense'),
+            (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml'),
+            (['ten_cubes'], 'ten_cubes')]):
+        with NodeProcess(tmp_path / str(number), arguments) as process:
+            assert process.wait() == 2
+            assert word in process.error
+            assert len(process.error.splitlines()) == 1, process.error
+
+
+def test_unknown_parameter_is_warned_of(tmp_path):
+    with NodeProcess(tmp_path, publish_rat=5.0, publish_rate=50) as process:
+        process.wait_for_text('try, in another terminal')
+        assert "no parameter 'publish_rat'" in process.error
+        assert 'near names: publish_rate' in process.error
+        assert 'states at 50 Hz' in process.error
+        assert process.stop()[0] == 0
+
+
+def test_help_lists_every_parameter(tmp_path):
+    with NodeProcess(tmp_path, ['--help']) as process:
+        assert process.wait() == 0
+        assert process.output.startswith('usage: rigid_sim_node')
+        for row in PARAMETERS:
+            assert f'  {row.name} = ' in process.output
+        assert process.error == ''
