@@ -39,6 +39,7 @@ MAY_IMPORT = {
     'topics': {'engine', 'messages', 'shared_files'},
     'benchmark': {'engine', 'scene', 'shared_files'},
     'view': {'engine', 'scene', 'messages', 'recording', 'shared_files'},
+    'bag_tools': {'engine', 'messages', 'nodes', 'recording', 'scene', 'shared_files', 'topics'},
     'nodes': {'engine', 'messages', 'recording', 'scene', 'shared_files', 'topics'},
 }
 
