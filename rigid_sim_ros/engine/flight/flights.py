@@ -55,7 +55,7 @@ class Flights:
         self._fixed_axis = FixedAxisRotations(count)
         self._others = {FREE: FreeRotations(count),
                         DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
-                        DRIVEN_UNEQUAL: FreeRotations(count)}
+                        DRIVEN_UNEQUAL: DrivenRotations(equal_moments, count)}
 
     @property
     def acceleration(self):
@@ -145,6 +145,25 @@ class Flights:
         else:
             quaternion, rate = self._others[kind].motion_of_one(index, time)
         return position, quaternion, velocity, rate
+
+    def motions(self, indices, times):
+        """
+        Return the motions of bodies (k,), each at a time of its own (k,) [s], world axes.
+
+        Positions (3, k) [m], unit quaternions (4, k), velocities (3, k) [m/s] and rates (3, k)
+        [rad/s]. Bodies that do not turn about a fixed axis are evaluated one by one.
+        """
+        elapsed = times - self._translations.start[indices]
+        position = np.empty((3, len(elapsed)))
+        orientation = np.empty((4, len(elapsed)))
+        self._translations.positions(elapsed, indices, position)
+        self._fixed_axis.orientations(elapsed, indices, orientation)
+        rate = self._fixed_axis.rates(elapsed, indices)
+        for place in np.flatnonzero(self._kind[indices] != FIXED_AXIS).tolist():
+            body = int(indices[place])
+            orientation[:, place], rate[:, place] = self._others[
+                self._kind.item(body)].motion_of_one(body, times.item(place))
+        return position, orientation, self._translations.velocities(elapsed, indices), rate
 
     def rate_bound(self, indices, start, end):
         """

@@ -1,0 +1,107 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+A free rotation as sums over multiples of a uniformly growing angle: k'^2 of at least 0.03.
+
+With s the nome of k and g = e^{2 eta} / sqrt(s) scaled as below,
+theta4 and theta1 at zeta - i sign eta are, up to a common factor,
+
+    a = 1 + sum_n (-1)^n [(P_n + R_n) cos 2n zeta + i sign (P_n - R_n) sin 2n zeta],   n = 1, 2, 3
+    b = sum_n (-1)^n [sign (B_n + C_n) sin (2n+1) zeta - i (B_n - C_n) cos (2n+1) zeta],  n = 0 to 3
+"""
+
+from math import pi
+
+from rigid_sim_ros.engine.flight.elliptic import nome, quarter_period
+from rigid_sim_ros.engine.flight.multiple_angles import (
+    combined, cubic, EVEN_COSINE, EVEN_SINE, ODD_COSINE, ODD_SINE)
+
+ROW_COUNT = 18
+"""Angle at the start, its rate, twist rate, then the polynomials of `pair`."""
+
+SMALLEST_FACTOR = 1e-100
+"""What g is at least: spin exactly about the axis of a symmetric top has g = 0."""
+
+NEWTON_ROUNDS = 4
+
+
+def rows(functions, polhode):
+    """Return the constants of the motion, a list of `ROW_COUNT` floats or arrays."""
+    sign = polhode.sign
+    s = nome(functions, polhode.square, polhode.complementary)
+    period = quarter_period(s)
+    start = functions.where(
+        polhode.backward,
+        functions.where(polhode.phase < 0, -2 * period, 2 * period) - polhode.phase,
+        polhode.phase)
+    rate = pi / (2 * period) * polhode.speed
+    g, v = _factor(functions, s, polhode.amplitude1 / (1 + polhode.amplitude3))
+    s3, s6, s10, s15 = s ** 3, s ** 6, s ** 10, s ** 15
+    p = (s * g ** 2, s6 * g ** 4, s15 * g ** 6)
+    r = (s * v ** 2, s6 * v ** 4, s15 * v ** 6)
+    b = (g, s3 * g ** 3, s10 * g ** 5, s15 * s6 * g ** 7)
+    c = (v, s3 * v ** 3, s10 * v ** 5, s15 * s6 * v ** 7)
+    # twist rate: the logarithmic derivative of theta4 at -i sign eta takes the place of Pi
+    slope = -2 * (p[0] - r[0]) + 4 * (p[1] - r[1]) - 6 * (p[2] - r[2])
+    value = 1 - (p[0] + r[0]) + (p[1] + r[1]) - (p[2] + r[2])
+    turn = polhode.twist - sign * rate * slope / value
+    even = [-(p[0] + r[0]), p[1] + r[1], -(p[2] + r[2])]
+    return [
+        pi / (2 * period) * start, rate, turn,
+        *combined(EVEN_COSINE, [1.0, *even]),
+        *combined(EVEN_SINE, [-sign * (p[0] - r[0]), sign * (p[1] - r[1]),
+                              -sign * (p[2] - r[2])]),
+        *combined(ODD_SINE, [sign * (b[0] + c[0]), -sign * (b[1] + c[1]),
+                             sign * (b[2] + c[2]), -sign * (b[3] + c[3])]),
+        *combined(ODD_COSINE, [c[0] - b[0], b[1] - c[1], c[2] - b[2], b[3] - c[3]])]
+
+
+def pair(functions, rows, elapsed):
+    """
+    Return (Re a, Im a, Re b, Im b, phase) at times since the start; the phase applies to both.
+
+    The pair is not of unit length.
+    """
+    zeta = rows[0] + rows[1] * elapsed
+    sine, cosine = functions.sin(zeta), functions.cos(zeta)
+    s = -sine * sine
+    imaginary = rows[7] + s * (rows[8] + s * rows[9])
+    return (cubic(rows[3:7], s), sine * cosine * imaginary, sine * cubic(rows[10:14], s),
+            cosine * cubic(rows[14:18], s), rows[2] * elapsed)
+
+
+def _factor(functions, s, ratio):
+    """
+    Return g and v = s / g such that theta1 / theta4 at the start of a period is the ratio.
+
+    The ratio is A1 / (1 + A3) = tan of half the angle between momentum and axis 3. Newton's
+    method on N(g) = ratio D(g) from the root of the leading terms g - s / g = ratio.
+    """
+    g = functions.maximum(0.5 * (ratio + functions.sqrt(ratio * ratio + 4 * s)), SMALLEST_FACTOR)
+    s3, s6, s10, s15, s21 = s ** 3, s ** 6, s ** 10, s ** 15, s ** 21
+    for _ in range(NEWTON_ROUNDS):
+        v = s / g
+        g2, v2 = g * g, v * v
+        g4, v4 = g2 * g2, v2 * v2
+        g3, v3 = g * g2, v * v2
+        numerator = (g - v - s3 * (g3 - v3) + s10 * (g * g4 - v * v4)
+                     - s21 * (g3 * g4 - v3 * v4))
+        denominator = 1 - s * (g2 + v2) + s6 * (g4 + v4) - s15 * (g2 * g4 + v2 * v4)
+        # derivatives with respect to log g
+        rise = g + v - 3 * s3 * (g3 + v3) + 5 * s10 * (g * g4 + v * v4)
+        fall = -2 * s * (g2 - v2) + 4 * s6 * (g4 - v4) - 6 * s15 * (g2 * g4 - v2 * v4)
+        slope = rise - ratio * fall
+        g = g - g * (numerator - ratio * denominator) / slope
+    return functions.maximum(g, SMALLEST_FACTOR), s / functions.maximum(g, SMALLEST_FACTOR)
