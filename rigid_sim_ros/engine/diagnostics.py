@@ -51,7 +51,7 @@ def energy(bodies, gravity, state):
 
 
 def momentum(bodies, state):
-    """Return the total momentum (3,) of the moving bodies [kg m/s], world axes."""
+    """Return the sum of the momenta of the moving bodies [kg m/s], (3,), world axes."""
     moving = slice(0, bodies.moving_count)
     return state.linear_velocity[:, moving] @ (1 / bodies.inverse_mass[moving])
 

@@ -72,7 +72,7 @@ class Encounters:
             self._guard(guarded)
 
     def rest(self, indices, time):
-        """These bodies (k,) lie still from `time` [s] on: what flies may hit them."""
+        """Let bodies (k,) lie still from `time` [s] on: what flies may hit them."""
         self._drop(indices)
         self._flying[indices] = False
         self._solid[indices] = True

@@ -109,12 +109,12 @@ class Sphere(Shape):
 
     @property
     def half_extents(self):
-        """The radius [m], three times."""
+        """Return the radius [m], three times."""
         return (self.radius,) * 3
 
     @property
     def bounding_radius(self):
-        """The radius [m]."""
+        """Return the radius [m]."""
         return self.radius
 
     @property

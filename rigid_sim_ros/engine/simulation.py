@@ -75,7 +75,7 @@ class Simulation:
 
     @property
     def time(self):
-        """Simulated time since the start [s]."""
+        """Return how much time has been simulated since the start [s]."""
         return self._method.time
 
     def advance(self, duration):
@@ -90,62 +90,62 @@ class Simulation:
 
     @property
     def names(self):
-        """Names of the moving bodies in scene order: the order of all rows, tuple of str."""
+        """Return the names of the moving bodies in scene order: the order of all rows, tuple of str."""
         return self._world.bodies.names[:self._world.bodies.moving_count]
 
     @property
     def all_names(self):
-        """The names, then fixed bodies, then planes: what `body_a` and `body_b` index."""
+        """Return `names`, then fixed bodies, then planes: what `body_a` and `body_b` index."""
         return self._world.bodies.names
 
     @property
     def position(self):
-        """Centres of mass [m], (n, 3)."""
+        """Return the centres of mass [m], (n, 3)."""
         return self._rows(self._method.state.position)
 
     @property
     def orientation(self):
-        """Unit quaternions x, y, z, w, body to world, (n, 4)."""
+        """Return unit quaternions x, y, z, w, body to world, (n, 4)."""
         return self._rows(self._method.state.orientation)
 
     @property
     def linear_velocity(self):
-        """Velocities of the centres of mass [m/s], (n, 3), world axes."""
+        """Return the velocities of the centres of mass [m/s], (n, 3), world axes."""
         return self._rows(self._method.state.linear_velocity)
 
     @property
     def angular_velocity(self):
-        """Angular velocities [rad/s], (n, 3), world axes."""
+        """Return the angular velocities [rad/s], (n, 3), world axes."""
         return self._rows(self._method.state.angular_velocity)
 
     @property
     def force(self):
-        """Held forces besides gravity [N], (n, 3), world axes."""
+        """Return the held forces besides gravity [N], (n, 3), world axes."""
         return self._rows(self._method.state.force)
 
     @property
     def torque(self):
-        """Held torques [N m], (n, 3), world axes."""
+        """Return the held torques [N m], (n, 3), world axes."""
         return self._rows(self._method.state.torque)
 
     @property
     def collisions(self):
-        """Events of the last advance in order of time: an array of dtype `events.COLLISION`."""
+        """Return the events of the last advance in order of time, of dtype `events.COLLISION`."""
         return self._collisions
 
     @property
     def asleep(self):
-        """Whether each body rests and is skipped until something wakes it, (n,) bool."""
+        """Return whether each body rests and is skipped until something wakes it, (n,) bool."""
         return self._method.asleep
 
     @property
     def work(self):
-        """What has been done since the start: a `work.Work` of counters."""
+        """Return what has been done since the start: a `work.Work` of counters."""
         return self._work
 
     @property
     def scene(self):
-        """The `model.Scene` with the bodies there are now, each as it was at the start."""
+        """Return the `model.Scene` with the bodies there are now, each as it was at the start."""
         return self._scene
 
     def energy(self):

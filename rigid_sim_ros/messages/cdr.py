@@ -179,7 +179,7 @@ class Reader:
 
     @property
     def remaining(self):
-        """Number of bytes not read yet."""
+        """Return the number of bytes not read yet."""
         return len(self._data) - self._offset
 
     def fail(self, reason):

@@ -68,7 +68,7 @@ class FileSummary:
 
     @property
     def message_count(self):
-        """Number of messages in all topics."""
+        """Return the number of messages in all topics."""
         return sum(self.counts.values())
 
     def add(self, topic, time_ns, count=1):

@@ -94,7 +94,7 @@ class McapFile:
 
     @property
     def pending_count(self):
-        """Number of messages in the chunk that is not written yet."""
+        """Return the number of messages in the chunk that is not written yet."""
         return self._chunk_message_count
 
     @property

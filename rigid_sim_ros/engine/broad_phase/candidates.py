@@ -28,9 +28,11 @@ def candidate_pairs(bodies, position, margin=0.0):
     Parameters
     ----------
     bodies : Bodies
+        Which bodies there are.
     position : (3, n) [m]
         Of all bodies; what follows for the planes is not read.
     margin : float [m]
+        Largest distance of the spheres.
 
     Returns
     -------

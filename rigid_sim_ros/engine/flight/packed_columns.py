@@ -31,7 +31,7 @@ class PackedColumns:
 
     @property
     def bodies(self):
-        """The members, (count,)."""
+        """Return the members, (count,)."""
         return self._bodies[:self.count]
 
     @property

@@ -78,7 +78,7 @@ class _Partner:
             self._inverse_mass + i1 * t[0] * t[0] + i2 * t[1] * t[1] + i3 * t[2] * t[2])
 
     def velocity(self, linear, angular):
-        """Return the velocity (3,) of the material point, with the sign of the contact's side."""
+        """Return how fast the material point moves, (3,), with the sign of the contact's side."""
         x, y, z = linear[:, self.index].tolist()
         turn = _cross(angular[:, self.index].tolist(), self._arm)
         return (self._sign * (x + turn[0]), self._sign * (y + turn[1]),

@@ -49,17 +49,23 @@ def gap_acceleration_bias(contacts, bodies, position, linear_velocity, angular_v
 
     Parameters
     ----------
-    contacts : Contacts, k of them
+    contacts : Contacts
+        k of them.
     bodies : Bodies
+        Which bodies there are.
     position : (3, n) [m]
-    linear_velocity : (3, n) [m/s], of the centres of mass
-    angular_velocity : (3, n) [rad/s], world axes
-        Of all bodies and planes, zero of what is fixed.
+        Of the centres of mass, as all below of all bodies and planes.
+    linear_velocity : (3, n) [m/s]
+        Of the centres of mass, zero of what is fixed.
+    angular_velocity : (3, n) [rad/s]
+        In world axes, zero of what is fixed.
 
     Returns
     -------
     gamma_n : (k,) [m/s^2]
-    gamma_t : (3, k) [m/s^2], world axes, across the normal
+        Along the normal.
+    gamma_t : (3, k) [m/s^2]
+        Across the normal, in world axes.
 
     """
     normal = contacts.normal

@@ -26,7 +26,7 @@ from rigid_sim_ros.engine.solvers.gauss_seidel import sweeps
 from rigid_sim_ros.engine.solvers.linear import solve_guessed
 from rigid_sim_ros.engine.solvers.newton import newton
 from rigid_sim_ros.engine.solvers.problem import ContactProblem, Solution
-from rigid_sim_ros.engine.solvers.rows import ContactRows, contact_rows
+from rigid_sim_ros.engine.solvers.rows import contact_rows, ContactRows
 from rigid_sim_ros.engine.solvers.single import solve_one
 
 __all__ = ['contact_rows', 'ContactProblem', 'ContactRows', 'Solution', 'solve']

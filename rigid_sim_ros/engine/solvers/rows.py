@@ -77,7 +77,7 @@ class ContactRows:
         return self.components(across)
 
     def components(self, vectors):
-        """Return the components (3k,) in contact axes of world vectors (3, k)."""
+        """Return world vectors (3, k) in contact axes, (3k,)."""
         axes = self.axes
         return (axes[:, 0] * vectors[0] + axes[:, 1] * vectors[1]
                 + axes[:, 2] * vectors[2]).ravel()
