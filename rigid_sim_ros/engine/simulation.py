@@ -90,7 +90,7 @@ class Simulation:
 
     @property
     def names(self):
-        """Return the names of the moving bodies in scene order: the order of all rows, tuple of str."""
+        """Return the names of the moving bodies in scene order, the order of all rows."""
         return self._world.bodies.names[:self._world.bodies.moving_count]
 
     @property
