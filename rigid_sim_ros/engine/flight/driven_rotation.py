@@ -34,7 +34,7 @@ FEW = 8
 """Up to so many bodies, strides are made one by one in plain floats: faster, measured."""
 
 BEGIN, END, SCALE = 0, 1, 2
-"""Rows of the table: times [s] of a stride, one over its length, then what the law keeps."""
+"""Rows of the table: times [s] of a stride, one over its unit, then what the law keeps."""
 
 LEADING = 3
 """Count of rows before those of the law."""
@@ -61,16 +61,16 @@ class Chain:
         self.states.append(state)
 
     def stride(self, number):
-        """Return (length [s], series) of a stride that is begun, made again if not kept."""
+        """Return (unit [s], series) of a stride that is begun, made again if not kept."""
         stride = self._strides.get(number)
         if stride is None:
-            length, series, state = self.law.stride(
+            end, unit, series, state = self.law.stride(
                 FLOATS, self.constants, self.times[number], self.states[number])
             if number == len(self.times) - 1:
-                self.append(self.times[number] + length, state)
+                self.append(end, state)
             if len(self._strides) >= KEPT_STRIDES:
                 self._strides.clear()
-            stride = self._strides[number] = length, series
+            stride = self._strides[number] = unit, series
         return stride
 
     def reach(self, time):
@@ -122,7 +122,7 @@ class DrivenRotations:
         """Write the world rates of those of `indices` (k,) that are here to `out` (3, k)."""
         places, table, fraction = self._current(time, indices)
         if len(places):
-            out[:, places] = self._law.rates(table, time, fraction)
+            out[:, places] = self._law.rates(ARRAYS, table, time, fraction)
 
     def write_rate_bounds(self, indices, start, end, out):
         """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
@@ -136,9 +136,9 @@ class DrivenRotations:
         """Return quaternion and world rate of one body in plain floats."""
         chain = self._chains[body]
         number = chain.reach(time)
-        length, series = chain.stride(number)
-        fraction = (time - chain.times[number]) / length
-        return self._law.motion_of_one(FLOATS, chain.constants, series, time, fraction)
+        unit, series = chain.stride(number)
+        fraction = (time - chain.times[number]) / unit
+        return self._law.motion_of_one(FLOATS, chain.constants, unit, series, time, fraction)
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""
@@ -150,8 +150,8 @@ class DrivenRotations:
         numbers = np.searchsorted(chain.times, times, side='right') - 1
         for number in np.unique(numbers).tolist():
             chosen = numbers == number
-            length, series = chain.stride(number)
-            fraction = (times[chosen] - chain.times[number]) / length
+            unit, series = chain.stride(number)
+            fraction = (times[chosen] - chain.times[number]) / unit
             result[:, chosen] = self._law.orientations_of_one(
                 ARRAYS, chain.constants, series, fraction)
         return result
@@ -169,7 +169,7 @@ class DrivenRotations:
         """
         Return where the members are in `indices` (k,), and their strides that hold `time`.
 
-        Places (m,), what the law keeps in the table (rows, m), fractions of the strides (m,).
+        Places (m,), what the law keeps in the table (rows, m), fractions of the units (m,).
         """
         places, columns = self._table.select(indices)
         stale = (time < columns[BEGIN]) | (time >= columns[END])
@@ -185,10 +185,10 @@ class DrivenRotations:
             for body in bodies.tolist():
                 chain = self._chains[body]
                 number = chain.reach(time)
-                length, series = chain.stride(number)
+                unit, series = chain.stride(number)
                 self._table.put_one(body, [
-                    chain.times[number], chain.times[number + 1], 1 / length,
-                    *self._law.rows(chain.constants, series)])
+                    chain.times[number], chain.times[number + 1], 1 / unit,
+                    *self._law.rows(chain.constants, unit, series)])
             return
         while len(bodies):
             bodies = bodies[self._extend(bodies, time)]
@@ -200,8 +200,8 @@ class DrivenRotations:
         begin = np.array([chain.times[number] for chain, number in zip(chains, numbers)])
         state = _rows(chain.states[number] for chain, number in zip(chains, numbers))
         constants = _rows(chain.constants for chain in chains)
-        length, series, state = self._law.stride(ARRAYS, constants, begin, state)
-        ends = (begin + length).tolist()
+        end, unit, series, state = self._law.stride(ARRAYS, constants, begin, state)
+        ends = end.tolist()
         states = zip(*(row.tolist() for row in state))
         for place, (chain, number, last) in enumerate(zip(chains, numbers, states)):
             if number == len(chain.times) - 1:
@@ -210,7 +210,7 @@ class DrivenRotations:
         end = np.array(ends)
         holds = end > time
         if holds.any():
-            columns = [begin, end, 1 / length, *self._law.rows(constants, series)]
+            columns = [begin, end, 1 / unit, *self._law.rows(constants, unit, series)]
             self._table.put(bodies[holds], np.array(columns)[:, holds])
         return ~holds
 

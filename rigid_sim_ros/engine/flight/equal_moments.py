@@ -61,11 +61,11 @@ def first(functions, time, moments, quaternion, rate, torque):
 
 def stride(functions, constants, time, state):
     """
-    Return (length [s], series of a and of c = conj(b), next state) of a stride from `time`.
+    Return (end [s], unit [s], series of a and of c = conj(b), next state) of a stride.
 
     With the rate (across, along + growth t) in the frame, `across` complex, q' = w q / 2 reads
     a' = (i w3 a - across c) / 2 and c' = (conj(across) a - i w3 c) / 2. The series are in the
-    fraction of the stride and end by the size of their terms: an order chosen from the reach
+    fraction of the stride, which is the unit, and end by the size of their terms: an order chosen from the reach
     alone falls short where the growth dominates, as terms then fall like
     (reach / 2)^(k/2) / (k/2)!.
     """
@@ -75,7 +75,8 @@ def stride(functions, constants, time, state):
     # half the angle is at most (speed + |growth| length / 2) length / 2
     length = 4 * REACH / (speed + functions.sqrt(speed * speed + 8 * REACH * abs(growth)))
     # the end is to be a time that floats can hold, or its rounding would turn the body
-    length = (time + length) - time
+    end = time + length
+    length = end - time
     turn, drift = 0.5j * along * length, 0.5j * growth * length * length
     across = 0.5 * across * length
     back = across.conjugate()
@@ -95,32 +96,32 @@ def stride(functions, constants, time, state):
             break
     a, c = sum(reversed(series_a)), sum(reversed(series_c))
     scale = 1 / functions.hypot(abs(a), abs(c))
-    return length, (series_a, series_c), (a * scale, c.conjugate() * scale)
+    return end, length, (series_a, series_c), (a * scale, c.conjugate() * scale)
 
 
-def rows(constants, series):
+def rows(constants, unit, series):
     """Return what the table keeps of a stride, a list of `ROW_COUNT` floats or arrays."""
     return [*constants[:KEPT], *coefficient_rows(series, ORDER)]
 
 
 def orientations(functions, table, fraction):
-    """Return the quaternions, (4, k), from `rows` (rows, k) at fractions (k,) of the strides."""
+    """Return the quaternions, (4, k), from `rows` (rows, k) at fractions (k,) of the units."""
     a, c = from_rows(table[KEPT:], 2, fraction)
     return out_of_frame(functions, table[FRAME], a, c.conjugate())
 
 
-def rates(table, time, fraction):
+def rates(functions, table, time, fraction):
     """Return the world rates, (3, k), from `rows` (rows, k) at one time."""
     return table[RATE] + table[GROWTH] * (time - table[START])
 
 
 def orientations_of_one(functions, constants, series, fractions):
-    """Return the quaternions, (4, K), of one body at fractions (K,) of a stride."""
+    """Return the quaternions, (4, K), of one body at fractions (K,) of a unit."""
     a, c = polynomials(series, fractions)
     return out_of_frame(functions, constants[FRAME], a, c.conjugate())
 
 
-def motion_of_one(functions, constants, series, time, fraction):
+def motion_of_one(functions, constants, unit, series, time, fraction):
     """Return quaternion and world rate of one body in plain floats."""
     a, c = (polynomial(one, fraction) for one in series)
     elapsed = time - constants[START]

@@ -16,7 +16,7 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.flight import equal_moments
+from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
 from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
 from rigid_sim_ros.engine.flight.fixed_axis import fixed_axes, fixed_axis, FixedAxisRotations
 from rigid_sim_ros.engine.flight.free_rotation import FreeRotations
@@ -55,7 +55,7 @@ class Flights:
         self._fixed_axis = FixedAxisRotations(count)
         self._others = {FREE: FreeRotations(count),
                         DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
-                        DRIVEN_UNEQUAL: DrivenRotations(equal_moments, count)}
+                        DRIVEN_UNEQUAL: DrivenRotations(unequal_moments, count)}
 
     @property
     def acceleration(self):
