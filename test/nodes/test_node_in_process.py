@@ -1,0 +1,146 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Nodes made in the test's own process: what is built, who publishes the clock, both executors."""
+
+from contextlib import contextmanager
+import time
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy')
+
+from geometry_msgs.msg import PoseArray, TwistStamped  # noqa: E402, I100
+from node_harness import Client, PATIENCE  # noqa: E402
+from rclpy.context import Context  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rigid_sim_ros.nodes.executors import EVENTS, make_executor, SINGLE_THREADED  # noqa: E402
+from rigid_sim_ros.nodes.node import SimulationNode  # noqa: E402
+from rigid_sim_ros.nodes.running import drive  # noqa: E402
+from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
+from std_msgs.msg import Header  # noqa: E402
+
+
+class Stop(StopRequest):
+    """Ends `drive` when a condition holds, or fails the test after a while."""
+
+    def __init__(self, condition):
+        super().__init__()
+        self._condition = condition
+        self._deadline = time.monotonic() + PATIENCE
+
+    @property
+    def requested(self):
+        assert time.monotonic() < self._deadline, 'waited in vain'
+        return self._condition()
+
+    @requested.setter
+    def requested(self, value):
+        pass
+
+
+@contextmanager
+def hosted(*namespaces, executor=EVENTS, **parameters):
+    """Give nodes, and a function that runs them until a condition holds."""
+    context = Context()
+    rclpy.init(context=context)
+    overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+    nodes = [SimulationNode(StopRequest(), context=context, namespace=namespace,
+                            parameter_overrides=overrides) for namespace in namespaces]
+    runner, _ = make_executor(executor, context)
+    for node in nodes:
+        runner.add_node(node.ros)
+        node.start()
+    try:
+        yield nodes, lambda condition: drive(nodes, runner, Stop(condition))
+    finally:
+        for node in nodes:
+            node.close()
+        rclpy.shutdown(context=context)
+
+
+def encoded(node):
+    return {publication.row.name: publication.encoded for publication in node.publications
+            if publication.encoded}
+
+
+def test_nothing_is_built_that_nobody_reads():
+    with hosted('') as ([node], run):
+        run(lambda: node.session.time >= 300_000_000)
+        # the latched scene is for subscribers yet to come
+        assert encoded(node) == {'~/scene': 1}
+
+
+def test_only_what_is_read_is_built():
+    with hosted('') as ([node], run), Client() as client:
+        poses = client.listen('~/poses')
+        run(lambda: len(client.poll(poses)) >= 10)
+        counts = encoded(node)
+        assert set(counts) == {'~/scene', '~/poses'}
+        assert counts['~/poses'] >= 10
+
+
+def test_only_what_is_recorded_is_built(tmp_path):
+    with hosted('', record=True, record_path=str(tmp_path / 'bag')) as ([node], run):
+        run(lambda: node.session.time >= 300_000_000)
+        counts = encoded(node)
+        assert {'~/scene', '~/poses', '~/states', '/clock'} <= set(counts)
+        assert not set(counts) & {'~/markers', '/diagnostics'}
+        # the first state, and one more for each period
+        assert counts['~/poses'] == 1 + node.session.time // 10_000_000
+
+
+@pytest.mark.parametrize('executor', [EVENTS, SINGLE_THREADED])
+def test_both_executors_serve(executor):
+    with hosted('', executor=executor) as ([node], run), Client() as client:
+        poses = client.listen('~/poses')
+        publisher = client.node.create_publisher(TwistStamped, '/rigid_sim/cmd_vel', 10)
+        run(publisher.get_subscription_count)
+        publisher.publish(TwistStamped(header=Header(frame_id='cube_1')))
+        run(lambda: node.session.commands.taken == 1)
+        start = time.monotonic()
+        count = len(client.poll(poses))
+        run(lambda: len(client.poll(poses)) >= count + 50)
+        # fifty states at 100 Hz: half a second, with some room for a busy machine
+        assert 0.3 < time.monotonic() - start < 3.0
+
+
+def test_two_nodes_in_one_process_and_one_clock():
+    with hosted('left', 'right', scene='report_dynamics') as (nodes, run), \
+            Client() as client:
+        received = {name: [] for name in ('left', 'right')}
+        for name, messages in received.items():
+            client.node.create_subscription(
+                PoseArray, f'/{name}/rigid_sim/poses', messages.append, 100)
+        run(lambda: all(len(client.poll(messages)) > 5 for messages in received.values()))
+        info = nodes[0].ros.get_publishers_info_by_topic('/clock')
+        assert [row.node_namespace for row in info] == ['/left']
+
+
+def test_nodes_that_start_together_settle_on_one_clock():
+    with hosted('left') as ([left], _), hosted('right') as ([right], _):
+        def clock_count():
+            return len(left.ros.get_publishers_info_by_topic('/clock'))
+
+        deadline = time.monotonic() + PATIENCE
+        # the first second is over when both have looked around
+        while clock_count() != 1 or left.session.time < 1_200_000_000:
+            assert time.monotonic() < deadline
+            time.sleep(min(left.work(), right.work()) - time.monotonic() > 0 and 1e-3)
+
+
+def test_both_publish_the_clock_if_told_to():
+    with hosted('left', 'right', publish_clock=True, scene='report_dynamics') as (nodes, run):
+        run(lambda: nodes[0].session.time > 1_200_000_000)
+        assert len(nodes[0].ros.get_publishers_info_by_topic('/clock')) == 2

@@ -1,0 +1,110 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Recording by the node, read back with a reader that is not ours."""
+
+import os
+import signal
+
+import numpy as np
+from numpy.testing import assert_array_equal
+import pytest
+
+pytest.importorskip('rclpy')
+rosbag2 = pytest.importorskip('rosbags.rosbag2')
+
+from node_harness import Client, nanoseconds, NodeProcess  # noqa: E402, I100
+from rclpy.serialization import deserialize_message  # noqa: E402
+from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
+
+MILLISECOND = 1_000_000
+
+
+def messages_of(path, topic):
+    """Return (time [ns], message, bytes) of a topic, deserialised by rclpy."""
+    with rosbag2.Reader(path) as reader:
+        connections = [row for row in reader.connections if row.topic == topic]
+        return [(time, deserialize_message(data, interface(connection.msgtype)), data)
+                for connection, time, data in reader.messages(connections)]
+
+
+def path_in(text):
+    return text.split(' to ')[-1].strip()
+
+
+@pytest.mark.parametrize('signals', [(signal.SIGINT, signal.SIGINT), (signal.SIGTERM,)])
+def test_recording_is_what_was_published_and_complete(tmp_path, signals):
+    with NodeProcess(tmp_path, scene='ten_cubes', record=True, record_path=tmp_path / 'bag',
+                     start_paused=True) as process, Client(process) as client:
+        received = client.listen('~/poses', raw=True)
+        assert client.call('~/pause', data=False).success
+        client.command('~/cmd_vel', 'cube_3', linear=(0, 0, 2))
+        client.spin_until(lambda: len(received) >= 40, 'forty states')
+        code, duration = process.stop(*signals, gap=0.01)
+        assert (code, duration < 2.0) == (0, True), process.error
+        assert 'recorded' in process.error.splitlines()[-1]
+        client.spin(0.1)
+    poses = messages_of(tmp_path / 'bag', '/rigid_sim/poses')
+    times = [time for time, *_ in poses]
+    # every state from the first to the last, none twice, stamped with its simulated time
+    assert times == [10 * MILLISECOND * number for number in range(len(poses))]
+    assert [nanoseconds(message) for _, message, _ in poses] == times
+    # byte for byte what subscribers got; they may miss the state shown before they came
+    recorded = {bytes(data) for *_, data in poses}
+    assert len(recorded) == len(poses)
+    assert len(received) >= 40
+    assert all(bytes(data) in recorded for data in received)
+    # the command, with the simulated time at which it took effect
+    (time, message, _), = messages_of(tmp_path / 'bag', '/rigid_sim/cmd_vel')
+    assert (message.header.frame_id, message.twist.linear.z) == ('cube_3', 2.0)
+    assert time in times
+    scene, = messages_of(tmp_path / 'bag', '/rigid_sim/scene')
+    assert 'cube_10' in scene[1].data
+
+
+def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
+    with NodeProcess(tmp_path, scene='ten_cubes', record_path='bag') as process, \
+            Client(process) as client:
+        poses = client.listen('~/poses')
+        client.spin_until(lambda: poses, 'a state')
+        assert not client.call('~/record', data=False).success
+        first = client.call('~/record', data=True)
+        assert first.success and path_in(first.message) == str(tmp_path / 'bag')
+        again = client.call('~/record', data=True)
+        assert not again.success and 'already recording' in again.message
+        count = len(poses)
+        client.spin_until(lambda: len(poses) > count + 20, 'twenty states')
+        ended = client.call('~/record', data=False)
+        assert ended.success and path_in(ended.message) == str(tmp_path / 'bag')
+        second = client.call('~/record', data=True)
+        assert second.success and path_in(second.message) == str(tmp_path / 'bag_2')
+        count = len(poses)
+        client.spin_until(lambda: len(poses) > count + 5, 'five states')
+        assert process.stop(signal.SIGINT)[0] == 0
+    for name, least in (('bag', 20), ('bag_2', 5)):
+        recorded = messages_of(tmp_path / name, '/rigid_sim/poses')
+        assert len(recorded) >= least
+        steps = np.diff([time for time, *_ in recorded])
+        assert_array_equal(steps, 10 * MILLISECOND)
+        # each begins with the scene, for whoever opens it alone
+        assert len(messages_of(tmp_path / name, '/rigid_sim/scene')) == 1
+
+
+def test_path_that_exists_is_refused(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    with NodeProcess(tmp_path, record=True, record_path='bag') as process:
+        assert process.wait() == 2
+        assert 'is there already' in process.error
+        assert len(process.error.splitlines()) == 1
+    assert os.listdir(tmp_path / 'bag') == []
