@@ -15,17 +15,21 @@
 """
 Bodies in lasting contact: who is, who may join, their steps, their sleep and their waking.
 
-Fixed bodies, planes and sleeping bodies are what islands may lie on.
+An island is a set of moving bodies that touch, or may within a few steps. Each is stepped by
+itself, so that none pays for another. Fixed bodies, planes and sleeping bodies are what islands
+may lie on.
 """
 
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
-from rigid_sim_ros.engine.methods.stepped import Stepped
-from rigid_sim_ros.engine.narrow_phase import find_contacts
+from rigid_sim_ros.engine.graph import component_labels
+from rigid_sim_ros.engine.lasting_contact import advance_island, Island
+from rigid_sim_ros.engine.lasting_pairs import LastingPairs
+from rigid_sim_ros.engine.narrow_phase import separations
 
 REACH_FACTOR = 4.0
 """
@@ -33,8 +37,24 @@ How much faster than the fastest body now one can be after an impact within a st
 flight that could reach a body in lasting contact at this speed is stepped with it.
 """
 
-PARTING_MARGIN = 1e-4
-"""Bodies further apart than this part of the smaller one no longer touch."""
+SKIN_STEPS = 4
+"""Pairs are looked for so far around that they stay complete for about so many steps."""
+
+SKIN = 0.05
+"""And at least this part of the smallest body around: what rests need not look again."""
+
+CLOSED = 1e-6
+"""A sleeping body nearer than this part of the smaller one is touched."""
+
+
+class Changes(NamedTuple):
+    """Whose regime a step has changed."""
+
+    parting: np.ndarray
+    """(k,) int: touch nothing any more, nor will soon."""
+
+    resting: np.ndarray
+    """(k,) int: have come to rest, and sleep."""
 
 
 class Islands:
@@ -46,65 +66,131 @@ class Islands:
         count = world.bodies.moving_count
         self.touching = np.zeros(count, dtype=bool)
         self.asleep = np.zeros(count, dtype=bool)
+        self._mates = np.full(count, -1)
+        """(n,): bodies asleep under the same number wake together."""
+        self._islands = []
+        self._members = np.zeros(0, dtype=int)
+        """(k,): the bodies in these islands."""
+        self._skin = 0.0
+        """How far they may still come nearer to anything [m] before islands are made again."""
+        self._pairs = LastingPairs(world)
+
+    @property
+    def active(self):
+        """Whether any body is in lasting contact and awake."""
+        return bool(self.touching.any())
 
     def step_end(self, time, end):
         """Return how far to go at once [s], at most to `end`: steps are equal and short enough."""
-        if not self.touching.any():
+        if not self.active:
             return end
         steps = np.ceil((end - time) / self._world.max_step * (1 - 1e-9))
         return end if steps <= 1 else time + (end - time) / steps
-
-    def reached(self, time, end):
-        """Return the bodies in flight (k,) that may meet one in lasting contact before `end`."""
-        flying = ~(self.touching | self.asleep)
-        if not (flying.any() and self.touching.any()):
-            return np.zeros(0, dtype=int)
-        bodies = self._world.bodies
-        radius = bodies.bounding_radius[:bodies.moving_count]
-        position, linear = self._flights.translation(time)
-        spin = self._flights.rate_bound(np.arange(bodies.moving_count), time, end)
-        pull = self._flights.acceleration
-        fastest = (np.sqrt(rotation.dot(linear, linear)[:bodies.moving_count]) + spin * radius
-                   + np.sqrt(rotation.dot(pull, pull)[:bodies.moving_count]) * (end - time)).max()
-        a, b = candidate_pairs(bodies, position, REACH_FACTOR * fastest * (end - time))
-        both = b < bodies.moving_count
-        a, b = a[both], b[both]
-        return np.union1d(a[flying[a] & self.touching[b]], b[flying[b] & self.touching[a]])
 
     def add(self, indices):
         """From now on these bodies (k,) are in lasting contact."""
         self.touching[indices] = True
 
-    def remove(self, indices):
-        """From now on these bodies (k,) are not."""
-        self.touching[indices] = False
-
     def wake(self, indices):
-        """Wake these bodies (k,) and all that sleep with them; return all that woke."""
-        return indices[:0]
+        """Wake those of bodies (k,) that sleep and all their mates; return who woke (m,)."""
+        woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
+        if len(woken):
+            self.asleep[woken] = False
+            self._mates[woken] = -1
+            self.add(woken)
+        return woken
+
+    def reached(self, start, end, state):
+        """
+        Return who may be touched by `end` [s] and is not in lasting contact yet.
+
+        Bodies in flight (k,) that may meet a touching one, and sleeping bodies (m,) that one
+        leans on or comes upon. `state` is that of all bodies at `start`.
+        """
+        moving = self._world.bodies.moving_count
+        touching = self.touching
+        if touching.all():
+            return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+        speed = self._speeds(state, start, end)
+        margin = REACH_FACTOR * (end - start) * speed.max()
+        a, b = candidate_pairs(self._world.bodies, state.position, margin)
+        both = b < moving
+        a, b = a[both], b[both]
+        mixed = touching[a] != touching[b]
+        here = np.where(touching[a], a, b)[mixed]
+        there = np.where(touching[a], b, a)[mixed]
+        sleeps = self.asleep[there]
+        here, sleepers = here[sleeps], there[sleeps]
+        gap = separations(self._world.bodies, here, sleepers, state.position, state.orientation)
+        near = gap < 1.5 * speed[here] * (end - start) + (
+            CLOSED * self._world.bodies.bounding_radius[here])
+        return np.unique(there[~sleeps]), np.unique(sleepers[near])
 
     def advance(self, members, start, end, state):
         """
-        Step these bodies (k,) from `start` to `end` [s]; return those that touch nothing then.
+        Step these bodies (k,) from `start` to `end` [s], island by island; return `Changes`.
 
-        `state` is that of all bodies at `start`; the columns of `members` are replaced.
+        `state` is that of all bodies at `start`; its columns of `members` are replaced.
         """
+        parting, resting = [members[:0]], [members[:0]]
+        for island in self._current(members, start, end, state):
+            outcome = advance_island(island, state, start, end - start)
+            self._pairs.update(end, island, outcome.contacts)
+            if outcome.resting:
+                self._mates[island.members] = island.members[0]
+                resting.append(island.members)
+            elif not outcome.touching.all():
+                parting.append(_alone(island, outcome.touching))
+        changes = Changes(np.concatenate(parting), np.concatenate(resting))
+        if len(changes.parting) or len(changes.resting):
+            self.touching[changes.parting] = self.touching[changes.resting] = False
+            self.asleep[changes.resting] = True
+        return changes
+
+    def _current(self, members, start, end, state):
+        """Return the islands of these bodies (k,), made again if they may not be complete."""
+        motion = 2 * (end - start) * self._speeds(state, start, end)[members].max()
+        self._skin -= motion
+        if self._skin < 0 or not np.array_equal(members, self._members):
+            radius = self._world.bodies.bounding_radius[members].min()
+            skin = max(SKIN_STEPS * motion, SKIN * radius)
+            self._members, self._skin = members, skin - motion
+            self._islands = self._found(members, state.position, skin)
+        return self._islands
+
+    def _found(self, members, position, skin):
+        """Return the islands that bodies (k,) nearer to each other than `skin` [m] make."""
         bodies = self._world.bodies
-        others = np.ones(bodies.count, dtype=bool)
-        others[members] = False
-        alone = replace(
-            bodies, inverse_mass=np.where(others, 0.0, bodies.inverse_mass),
-            inverse_inertia=np.where(others, 0.0, bodies.inverse_inertia))
-        state.linear_velocity = np.where(others, 0.0, state.linear_velocity)
-        state.angular_velocity = np.where(others, 0.0, state.angular_velocity)
-        stepped = Stepped(replace(self._world, bodies=alone), state, end)
-        stepped.step(end - start)
-        self._world.work.contact_steps += 1
-        a, b = candidate_pairs(alone, state.position, 0.0)
-        ours = ~(others[a] & others[b])
+        is_member = np.zeros(bodies.count, dtype=bool)
+        is_member[members] = True
+        solid = is_member.copy()
+        solid[:bodies.moving_count] |= self.asleep
+        solid[bodies.moving_count:] = True
+        a, b = candidate_pairs(bodies, position, skin)
+        ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
         a, b = a[ours], b[ours]
-        size = np.minimum(bodies.bounding_radius[a], bodies.bounding_radius[b])
-        contacts = find_contacts(alone, a, b, state.position, state.orientation,
-                                 PARTING_MARGIN * size)
-        others[contacts.body_a] = others[contacts.body_b] = True
-        return members[~others[members]]
+        both = is_member[a] & is_member[b]
+        labels = component_labels(bodies.count, a[both], b[both])
+        of_pair, of_member = labels[np.where(is_member[a], a, b)], labels[members]
+        return [Island(self._world, members[of_member == label], a[of_pair == label],
+                       b[of_pair == label]) for label in np.unique(of_member)]
+
+    def _speeds(self, state, start, end):
+        """Return bounds of how fast points of moving bodies are until `end`, (n,) [m/s]."""
+        moving = slice(0, self._world.bodies.moving_count)
+        linear, angular = state.linear_velocity[:, moving], state.angular_velocity[:, moving]
+        pull = self._flights.acceleration[:, moving]
+        return (np.sqrt(rotation.dot(linear, linear))
+                + np.sqrt(rotation.dot(angular, angular))
+                * self._world.bodies.bounding_radius[moving]
+                + np.sqrt(rotation.dot(pull, pull)) * (end - start))
+
+
+def _alone(island, touching):
+    """Return the members of an island that touch nothing and have no member near, (k,)."""
+    count = island.member_count
+    a, b = island.pairs.pairs_a, island.pairs.pairs_b
+    both = (a < count) & (b < count)
+    beside = np.zeros(count, dtype=bool)
+    beside[a[both]] = beside[b[both]] = True
+    return island.members[~touching & ~beside]

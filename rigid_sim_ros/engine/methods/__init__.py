@@ -20,8 +20,9 @@ of it at that time), `advance(duration)`, `set_motion(indices, **quantities)`,
 `set_wrench(indices, force, torque)` and `asleep`.
 """
 
+from rigid_sim_ros.engine.methods.exact import Exact
 from rigid_sim_ros.engine.methods.report import Report
 from rigid_sim_ros.engine.methods.stepped import Stepped
 
-METHODS = {'stepped': Stepped, 'report': Report}
+METHODS = {'exact': Exact, 'stepped': Stepped, 'report': Report}
 """Every method by its name."""

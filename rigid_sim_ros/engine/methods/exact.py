@@ -23,6 +23,7 @@ come to rest; what rests is left alone until something wakes it.
 
 import numpy as np
 
+from rigid_sim_ros.engine.broad_phase import candidate_pairs
 from rigid_sim_ros.engine.encounters import Encounters
 from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.islands import Islands
@@ -75,11 +76,14 @@ class Exact:
             self._state = None
 
     def _gather(self, end):
-        """Put those in flight that may reach an island before `end` [s] in with it."""
-        reached = self._islands.reached(self.time, end)
-        if len(reached):
-            self._encounters.hide(reached)
-            self._islands.add(reached)
+        """Put those that may meet a body in lasting contact before `end` [s] in with it."""
+        if not self._islands.active:
+            return
+        flying, sleeping = self._islands.reached(self.time, end, self.state)
+        joining = np.concatenate((flying, self._islands.wake(sleeping)))
+        if len(joining):
+            self._encounters.hide(joining)
+            self._islands.add(joining)
 
     def _fly(self, end):
         """Follow the flights to `end` [s], or to a touch that lasts; return when that is."""
@@ -90,14 +94,18 @@ class Exact:
 
     def _touch(self, time, body_a, body_b):
         """Resolve the touch of pairs (p,) at `time` [s]; return whether any of it lasts."""
-        moving = sorted({index for index in (*body_a.tolist(), *body_b.tolist())
-                         if index < self._world.bodies.moving_count})
-        moving = np.array(moving)
-        touch = self._touches.resolve(time, moving, body_a, body_b)
-        position, orientation = self._flights.poses(time, moving)
-        self._flights.begin(moving, time, position, orientation, touch.linear, touch.angular,
-                            self._acceleration[:, moving], self._torque[:, moving])
-        stay, part = moving[touch.stays], moving[~touch.stays]
+        struck = np.array(sorted({index for index in (*body_a.tolist(), *body_b.tolist())
+                                  if index < self._world.bodies.moving_count}))
+        woken = self._islands.wake(struck)
+        if len(woken):
+            struck = np.union1d(struck, woken)
+            body_a, body_b = self._with_supports(time, woken, body_a, body_b)
+        touch = self._touches.resolve(time, struck, body_a, body_b)
+        position, orientation = self._flights.poses(time, struck)
+        self._flights.begin(struck, time, position, orientation, touch.linear, touch.angular,
+                            self._acceleration[:, struck], self._torque[:, struck])
+        stays = touch.stays | self._islands.touching[struck]
+        stay, part = struck[stays], struck[~stays]
         if len(part):
             self._encounters.fly(part, time, np.array((body_a, body_b)))
         if len(stay):
@@ -105,15 +113,34 @@ class Exact:
             self._islands.add(stay)
         return len(stay) > 0
 
+    def _with_supports(self, time, woken, body_a, body_b):
+        """Return pairs (p,) and those of bodies that woke (k,) with each other and the fixed."""
+        bodies = self._world.bodies
+        a, b = candidate_pairs(bodies, self._flights.translation(time)[0])
+        awoke = np.zeros(bodies.count, dtype=bool)
+        awoke[woken] = True
+        fixed = np.arange(bodies.count) >= bodies.moving_count
+        ours = (awoke[a] & (awoke[b] | fixed[b])) | (awoke[b] & fixed[a])
+        pairs = np.unique(np.array((np.append(body_a, a[ours]), np.append(body_b, b[ours]))),
+                          axis=1)
+        return pairs[0], pairs[1]
+
     def _step(self, members, end):
-        """Step these bodies (k,) to `end` [s]; those whose contact has ended fly again."""
-        state = FlightState(self._flights, self.time, self._force, self._torque,
-                            self._world.work)
-        parting = self._islands.advance(members, self.time, end, state)
+        """Step these bodies (k,) to `end` [s], and see who parts and who comes to rest."""
+        state = self.state
+        parting, resting = self._islands.advance(members, self.time, end, state)
         self._begin(members, end, state)
         if len(parting):
-            self._islands.remove(parting)
             self._encounters.fly(parting, end)
+        if len(resting):
+            self._lay_down(resting, end)
+
+    def _lay_down(self, indices, time):
+        """Bodies (k,) lie still from `time` [s] on, whatever forces act on them."""
+        still = np.zeros((3, len(indices)))
+        self._flights.begin(indices, time, *self._flights.poses(time, indices), still, still,
+                            still, still)
+        self._encounters.rest(indices, time)
 
     # -- commands ------------------------------------------------------------------------------
 
@@ -126,9 +153,14 @@ class Exact:
 
     def set_wrench(self, indices, force, torque):
         """Hold these forces and torques (3, k) on bodies (k,)."""
+        changed = ((self._force[:, indices] != force) | (self._torque[:, indices] != torque))
+        changed = changed.any(axis=0)
+        if not changed.any():
+            return
+        indices = indices[changed]
         state = self.state
-        state.change('force', indices, force)
-        state.change('torque', indices, torque)
+        state.change('force', indices, force[:, changed])
+        state.change('torque', indices, torque[:, changed])
         self._force, self._torque = state.force, state.torque
         self._acceleration = self._world.acceleration(self._force)
         self._restart(indices)
@@ -144,8 +176,10 @@ class Exact:
 
     def _restart(self, indices):
         """Go on from the changed state of bodies (k,)."""
+        woken = self._islands.wake(indices)
+        self._encounters.hide(woken)
+        indices = np.union1d(indices, woken)
         self._begin(indices, self.time, self.state)
-        self._islands.wake(indices)
         flying = indices[~self._islands.touching[indices]]
         if len(flying):
             self._encounters.fly(flying, self.time)
