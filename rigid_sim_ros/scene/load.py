@@ -16,6 +16,7 @@
 
 from itertools import chain
 
+from rigid_sim_ros.engine.impacts import IMPACT_LAWS
 from rigid_sim_ros.engine.model import Material, Plane, Scene
 from rigid_sim_ros.scene import values
 from rigid_sim_ros.scene.bodies import body_label, MAX_BODIES, read_bodies, read_material
@@ -27,7 +28,6 @@ from rigid_sim_ros.scene.yaml_values import parse_yaml
 
 SCENE_KEYS = ('gravity', 'material', 'impact_law', 'planes', 'bodies')
 PLANE_KEYS = ('name', 'normal', 'offset', 'material')
-IMPACT_LAWS = ('poisson', 'newton', 'stronge')
 
 
 def load_scene(source):
