@@ -67,4 +67,5 @@ def angular_momentum(bodies, state):
 def penetration(bodies, state):
     """Return how deep the deepest pair of bodies overlaps [m], a float; zero if none does."""
     a, b = candidate_pairs(bodies, state.position)
-    return float(-separations(bodies, a, b, state.position, state.orientation).min(initial=0.0))
+    gaps = separations(bodies, a, b, state.position, state.orientation)
+    return max(0.0, -float(gaps.min(initial=0.0)))
