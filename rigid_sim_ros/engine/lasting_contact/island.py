@@ -1,0 +1,114 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+An island: bodies in lasting contact with each other and with what does not move, by themselves.
+
+An island has its own small `Bodies`, so that its steps cost what it needs and not what the scene
+has. Its columns are its members, then what they may touch that does not move: fixed bodies,
+planes, bodies asleep.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
+from rigid_sim_ros.engine.lasting_contact.scales import Scales
+from rigid_sim_ros.engine.narrow_phase import PairGroups
+
+
+class Island:
+    """
+    What stays the same about an island while its members and pairs are the same.
+
+    Parameters
+    ----------
+    world : World
+    members : (m,) int
+        The indices of its moving bodies.
+    pairs_a, pairs_b : (p,) int
+        Pairs that may touch, at least one of each a member; what is not a member does not move.
+
+    """
+
+    def __init__(self, world, members, pairs_a, pairs_b):
+        self.world = world
+        self.members = np.asarray(members)
+        others = np.setdiff1d(np.concatenate((pairs_a, pairs_b)), members)
+        self.columns = np.concatenate((self.members, others)).astype(int)
+        self.bodies = _own_bodies(world.bodies, self.columns, len(self.members))
+        local = np.empty(world.bodies.count, dtype=int)
+        local[self.columns] = np.arange(len(self.columns))
+        self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
+
+    @property
+    def member_count(self):
+        """Count of moving bodies."""
+        return len(self.members)
+
+    def free_motion(self, state):
+        """Return the `FreeMotion` under the forces of a `State` of the whole scene."""
+        bodies, columns = self.bodies, self.columns
+        moving = bodies.inverse_mass > 0
+        acceleration = (self.world.gravity[:, None] * moving
+                        + bodies.inverse_mass * state.force[:, columns])
+        return FreeMotion(bodies, acceleration, state.torque[:, columns] * moving)
+
+    def scales(self, free):
+        """Return the `Scales` of the island under a `FreeMotion`."""
+        acceleration = free.acceleration
+        return Scales(float(self.bodies.bounding_radius[:self.member_count].min()),
+                      float(np.sqrt((acceleration * acceleration).sum(axis=0).max())))
+
+    def gather(self, state):
+        """Return the island's `Motion` out of a `State` of the whole scene."""
+        columns, moving = self.columns, self.bodies.inverse_mass > 0
+        return Motion(state.position[:, columns], state.orientation[:, columns],
+                      state.linear_velocity[:, columns] * moving,
+                      state.angular_velocity[:, columns] * moving)
+
+    def scatter(self, motion, state):
+        """Put the members' columns of a `Motion` into a `State` of the whole scene."""
+        count = self.member_count
+        for quantity, columns in (
+                ('position', motion.position), ('orientation', motion.orientation),
+                ('linear_velocity', motion.linear), ('angular_velocity', motion.angular)):
+            state.change(quantity, self.members, columns[:, :count])
+
+    def find_contacts(self, motion, margin):
+        """Return the contacts (own columns) with gaps below a margin [m]."""
+        self.world.work.narrow_phases += len(self.pairs.pairs_a)
+        return self.pairs.find_contacts(motion.position, motion.orientation, margin)
+
+    def pairs_of(self, contacts):
+        """Return the `PairGroups` of the pairs (own columns) that these contacts are of."""
+        pairs = np.unique(np.stack((contacts.body_a, contacts.body_b)), axis=1)
+        return PairGroups(self.bodies, *pairs)
+
+
+def _own_bodies(bodies, columns, member_count):
+    """Return the `Bodies` of these columns, of which all but the first do not move."""
+    mobile = np.arange(len(columns)) < member_count
+    kinds = tuple(bodies.kinds[column] for column in columns)
+    return replace(
+        bodies, names=tuple(bodies.names[column] for column in columns),
+        moving_count=member_count, body_count=len(columns), kinds=kinds,
+        half_extents=bodies.half_extents[:, columns],
+        bounding_radius=bodies.bounding_radius[columns],
+        plane_normal=bodies.plane_normal[:, columns], plane_offset=bodies.plane_offset[columns],
+        inverse_mass=bodies.inverse_mass[columns] * mobile,
+        inertia=np.where(mobile, bodies.inertia[:, columns], 1.0),
+        inverse_inertia=bodies.inverse_inertia[:, columns] * mobile,
+        restitution=bodies.restitution[columns], friction=bodies.friction[columns])

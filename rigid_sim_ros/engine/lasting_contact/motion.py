@@ -1,0 +1,125 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The motion of an island's bodies: what a step changes, and how they move between contacts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+
+
+@dataclass(frozen=True)
+class Motion:
+    """
+    Poses and velocities of all columns of an island's own `Bodies`: those that move, then others.
+
+    Never written into: what changes it makes a new one.
+    """
+
+    position: np.ndarray
+    """(3, n) [m]."""
+
+    orientation: np.ndarray
+    """(4, n)."""
+
+    linear: np.ndarray
+    """(3, n) [m/s]; zero of what does not move."""
+
+    angular: np.ndarray
+    """(3, n) [rad/s], world axes; likewise."""
+
+    def struck(self, touched, linear, angular):
+        """Return the motion with changes (3, m) of the velocities of bodies `touched` (m,)."""
+        after_linear, after_angular = self.linear.copy(), self.angular.copy()
+        after_linear[:, touched] += linear
+        after_angular[:, touched] += angular
+        return Motion(self.position, self.orientation, after_linear, after_angular)
+
+    def stopped(self):
+        """Return the motion with all velocities zero."""
+        zeros = np.zeros_like(self.linear)
+        return Motion(self.position, self.orientation, zeros, zeros)
+
+    def moved(self, touched, linear, angular):
+        """Return the motion with bodies `touched` (m,) moved by (3, m) and turned by (3, m)."""
+        position, orientation = self.position.copy(), self.orientation.copy()
+        position[:, touched] += linear
+        orientation[:, touched] = rotation.normalize(rotation.multiply(
+            rotation.from_rotation_vector(angular), orientation[:, touched]))
+        return Motion(position, orientation, self.linear, self.angular)
+
+
+class FreeMotion:
+    """
+    What bodies do without contact under constant forces: second order, symmetric in time.
+
+    With unequal moments the angular momentum is what the half steps carry; rates follow from it
+    and the attitude, so that without contact it is kept to rounding.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    acceleration, torque : (3, n) [m/s^2], [N m]
+        Held, of all columns, world axes.
+
+    """
+
+    def __init__(self, bodies, acceleration, torque):
+        self.acceleration = acceleration
+        self._torque = torque
+        self._inertia = bodies.inertia
+        self._inverse_inertia = bodies.inverse_inertia
+        moments = bodies.inertia[:, :bodies.moving_count]
+        self._plain = bool((moments == moments[0]).all()) and not torque.any()
+
+    def angular_acceleration(self, motion):
+        """Return what torques and the gyroscopic term give, (3, n) [rad/s^2], world axes."""
+        if self._plain:
+            return np.zeros_like(motion.angular)
+        turn = rotation.matrix(motion.orientation)
+        rate = rotation.transform_transposed(turn, motion.angular)
+        torque = (rotation.transform_transposed(turn, self._torque)
+                  - rotation.cross(rate, self._inertia * rate))
+        return rotation.transform(turn, self._inverse_inertia * torque)
+
+    def kicked(self, motion, time):
+        """Return the motion after forces have acted for `time` [s] and nothing has moved."""
+        angular = motion.angular
+        if not self._plain:
+            angular = angular + time * self.angular_acceleration(motion)
+        return Motion(motion.position, motion.orientation,
+                      motion.linear + time * self.acceleration, angular)
+
+    def drifted(self, start, kicked, struck, time):
+        """
+        Return the motion after a drift of `time` [s] and the other half of a step's forces.
+
+        A step goes from `start` by `kicked` for half the time to `struck`, which has the impulses
+        of contacts in addition; the bodies drift at the velocities of that.
+        """
+        position = struck.position + time * struck.linear
+        orientation = rotation.normalize(rotation.multiply(
+            rotation.from_rotation_vector(time * struck.angular), struck.orientation))
+        angular = struck.angular
+        if not self._plain:
+            before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
+            given = start.angular + struck.angular - kicked.angular
+            momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
+                before, given)) + time * self._torque
+            angular = rotation.transform(after, self._inverse_inertia
+                                         * rotation.transform_transposed(after, momentum))
+        return Motion(position, orientation, struck.linear + 0.5 * time * self.acceleration,
+                      angular)
