@@ -103,10 +103,11 @@ class CollisionEncoder:
 def _points(events, time_ns):
     # np.zeros leaves the unused bytes of a point zero too
     points = np.zeros(len(events), POINT_TYPE)
-    for name in ('point', 'normal', 'impulse'):
-        prefix = '' if name == 'point' else name + '_'
-        for axis, letter in enumerate('xyz'):
-            points[prefix + letter] = events[name][:, axis]
+    with np.errstate(over='ignore'):  # too far away for a float32 is infinitely far
+        for name in ('point', 'normal', 'impulse'):
+            prefix = '' if name == 'point' else name + '_'
+            for axis, letter in enumerate('xyz'):
+                points[prefix + letter] = events[name][:, axis]
     for name in ('speed', 'body_a', 'body_b', 'kind'):
         points[name] = events[name]
     points['time_offset'] = events['time'] - time_ns / NANOSECONDS

@@ -14,6 +14,7 @@
 
 """The files of a bag, as one stream of messages."""
 
+import json
 import os
 import re
 from typing import NamedTuple
@@ -75,7 +76,7 @@ class Bag:
         """`BagTopic` by name."""
 
         self.attachments = {}
-        """Bytes of the first file's attachments, by name."""
+        """Bytes by name, of the first file that has them; there from the first message on."""
 
     def messages(self):
         """Go through all messages in the order in which they were recorded."""
@@ -94,7 +95,9 @@ class Bag:
 
     def _messages_of(self, scan):
         unknown = set()
-        for channel, _, time_ns, data in scan.messages():
+        for number, (channel, _, time_ns, data) in enumerate(scan.messages()):
+            if number == 0:
+                self._take_attachments(scan)
             topic = scan.topics.get(channel)
             if topic is not None:
                 self.topics.setdefault(topic.name, topic)
@@ -110,5 +113,23 @@ class Bag:
             self.unfinished.append(scan.name)
         for topic in scan.topics.values():
             self.topics.setdefault(topic.name, topic)
+        self._take_attachments(scan)
+
+    def _take_attachments(self, scan):
         for attachment in scan.attachments.values():
             self.attachments.setdefault(attachment.name, attachment.data)
+
+    def scene(self):
+        """Return the attached scene, YAML; empty if there is none."""
+        return self.attachments.get('scene.yaml', b'').decode(errors='replace')
+
+    def options(self):
+        """Return what else the run was started with, a dict; empty if there is none."""
+        try:
+            options = json.loads(self.attachments.get('run.json', b'{}'))
+        except (ValueError, RecursionError):
+            options = None
+        if not isinstance(options, dict):
+            self.damage.append('the attachment run.json is no JSON object')
+            return {}
+        return options

@@ -15,7 +15,6 @@
 """Reads a recording into NumPy arrays, in one pass, without ROS."""
 
 from dataclasses import dataclass, field
-import json
 
 import numpy as np
 from rigid_sim_ros.messages import (
@@ -166,8 +165,7 @@ class _Collected:
 
     def recording(self, bag):
         """Return the `Recording`."""
-        attached = bag.attachments
-        options = _options(attached.get('run.json', b'{}'), bag.damage)
+        options = bag.options()
         source = self.poses if self.poses.rows else self.states
         rows = np.array(source.rows) if source.rows else np.empty((0, 0, 7))
         names = _names(options.get('names'), self.names, rows.shape[1])
@@ -179,8 +177,7 @@ class _Collected:
             **_rates(self.states, source, rows.shape[1]),
             collisions=np.concatenate([np.zeros(0, COLLISION_TYPE), *self.collisions]),
             commands=self.commands,
-            scene=attached.get('scene.yaml', b'').decode(errors='replace') or self.scene,
-            options=options, finished=not bag.unfinished, damage=tuple(bag.damage))
+            scene=bag.scene() or self.scene, options=options, finished=not bag.unfinished, damage=tuple(bag.damage))
 
 
 _TAKERS = {
@@ -189,17 +186,6 @@ _TAKERS = {
     ('collisions', 'sensor_msgs/msg/PointCloud2'): _Collected.take_collisions,
     ('scene', 'std_msgs/msg/String'): _Collected.take_scene,
 }
-
-
-def _options(data, damage):
-    try:
-        options = json.loads(data)
-    except (ValueError, RecursionError):
-        options = None
-    if not isinstance(options, dict):
-        damage.append('the attachment run.json is no JSON object')
-        return {}
-    return options
 
 
 def _names(recorded, in_states, body_count):

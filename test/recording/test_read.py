@@ -126,8 +126,8 @@ def test_it_works_without_ros(bag, tmp_path):
     assert output.stdout == '(100, 3, 3)\n[]\n'
 
 
-def test_options_that_are_no_object_are_told(tmp_path, run):
-    from rigid_sim_ros.recording.read import _options
-    damage = []
-    assert _options(json.dumps([1]).encode(), damage) == {}
-    assert damage == ['the attachment run.json is no JSON object']
+def test_options_that_are_no_object_are_told(bag):
+    opened = recording.Bag(bag)
+    opened.attachments['run.json'] = json.dumps([1]).encode()
+    assert opened.options() == {}
+    assert opened.damage == ['the attachment run.json is no JSON object']

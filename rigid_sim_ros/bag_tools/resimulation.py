@@ -1,0 +1,186 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Simulates a recording again from its scene and commands.
+
+The simulation is driven as the node drove it: from one recorded state to the next, with each
+command carried out at the simulated time at which it took effect. What the node published is
+made again from it, byte for byte, if the engine is the same.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from rigid_sim_ros import topics
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.messages import decode_pose_array, MessageError
+from rigid_sim_ros.nodes.command_readers import READERS
+from rigid_sim_ros.nodes.commands import BODY_AXES, Refused, WORLD_AXES
+from rigid_sim_ros.nodes.session import Session
+from rigid_sim_ros.recording import Bag, RecordingError
+from rigid_sim_ros.recording.journal import decode_journal, PARAMETERS
+from rigid_sim_ros.scene import load_scene, SceneError
+
+POSES = 'poses'
+
+COMPARED = (POSES, 'states', 'collisions')
+"""Last parts of the names of the topics that are made again."""
+
+_ROWS = {row.name.rpartition('/')[2]: row for row in topics.PUBLISHED}
+
+_ANY_RATE = 1.0
+"""Of the session; states are asked for one by one instead."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A recorded message, and the one made again in its place."""
+
+    kind: str
+    """One of `COMPARED`."""
+
+    time_ns: int
+    recorded: bytes
+    again: bytes
+
+
+class Resimulation:
+    """
+    A recording, simulated again.
+
+    Parameters
+    ----------
+    path : str
+        The bag.
+    changes : dict
+        Options of `Simulation` that replace those of the recording.
+
+    Raises `RecordingError` with one line if the recording does not hold what is needed.
+
+    """
+
+    def __init__(self, path, changes=None):
+        self._bag = Bag(path)
+        self._messages = self._bag.messages()
+        self._changes = changes or {}
+        self._readers = {name.rpartition('/')[2]: make() for name, make in READERS.items()}
+        self._session = None
+        self._encoders = {}
+        self._collisions = None
+        self._frame = None
+
+    @property
+    def names(self):
+        """Names of the bodies; known once the first pair was made."""
+        return self._session.simulation.names
+
+    @property
+    def damage(self):
+        """What of the recording could not be read."""
+        return self._bag.damage
+
+    def pairs(self):
+        """
+        Go through the recording, and make a `Pair` of every message of a topic in `COMPARED`.
+
+        Raises `RecordingError` if it cannot be simulated again, now or from some moment on.
+        """
+        ahead = deque()
+        for message in self._messages:
+            kind = message.topic.rpartition('/')[2]
+            if kind == POSES and self._session is None:
+                self._begin(message)
+                for earlier_kind, earlier in ahead:
+                    self._take(earlier_kind, earlier)
+                ahead.clear()
+            if self._session is None:
+                # what comes before the first state waits for the simulation to be there
+                ahead.append((kind, message))
+            elif kind in COMPARED:
+                yield self._compared(kind, message)
+            else:
+                self._take(kind, message)
+        if self._session is None:
+            raise RecordingError(f'{self._bag.path} holds no state')
+
+    def _begin(self, message):
+        if message.time_ns:
+            raise RecordingError(
+                f'{self._bag.path} begins at {message.time_ns / 1e9:.9f} s of a run; only a '
+                'recording from the start of a run can be simulated again')
+        scene, options = self._scene_and_options()
+        try:
+            simulation = Simulation(load_scene(scene), **options)
+            self._frame = decode_pose_array(message.data).frame_id
+        except (SceneError, ValueError, TypeError) as error:
+            raise RecordingError(f'{self._bag.path} cannot be simulated again: {error}') from error
+        self._session = Session(simulation, _ANY_RATE, self._publish)
+        self._source = topics.Source(simulation, self._frame)
+
+    def _scene_and_options(self):
+        scene, recorded = self._bag.scene(), self._bag.options()
+        options = {name: recorded[name] for name in ('method', 'max_step') if name in recorded}
+        if not scene or len(options) < 2:
+            raise RecordingError(f'{self._bag.path} holds no scene, method and max_step to '
+                                 'simulate it from')
+        return scene + '\n', {**options, **self._changes}
+
+    def _publish(self, time_ns, collisions):
+        self._collisions = collisions
+
+    def _take(self, kind, message):
+        """Do what a message of the recording tells to do, if it does."""
+        try:
+            if kind == 'journal':
+                self._obey(decode_journal(message.data))
+            elif kind in self._readers:
+                self._carry_out(self._readers[kind](message.data)[1], message.time_ns)
+        except (MessageError, Refused) as error:
+            text = error.describe() if isinstance(error, Refused) else error
+            raise RecordingError(f'{message.topic} at {message.time_ns / 1e9:.9f} s cannot be '
+                                 f'carried out again: {text}') from error
+
+    def _carry_out(self, command, time_ns):
+        commands, now = self._session.commands, self._session.time
+        if time_ns <= now:
+            commands.carry_out(command, now)
+        else:
+            commands.schedule(command, time_ns, 0, now)
+
+    def _obey(self, line):
+        if line['event'] == PARAMETERS:
+            if line['command_axes'] not in (WORLD_AXES, BODY_AXES):
+                raise MessageError(f'command_axes is {line["command_axes"]!r}')
+            self._session.commands.axes = line['command_axes']
+            self._session.commands.timeout = line['command_timeout']
+        else:
+            self._session.reset(line['time_from_zero'])
+
+    def _compared(self, kind, message):
+        session = self._session
+        if message.time_ns > session.time:
+            session.advance_to(message.time_ns)
+        elif message.time_ns < session.time:
+            raise RecordingError(
+                f'{self._bag.path}: time goes back from {session.time / 1e9:.9f} s to '
+                f'{message.time_ns / 1e9:.9f} s without a reset')
+        if kind not in self._encoders:
+            self._encoders[kind] = _ROWS[kind].encoder(self._source)
+        self._source.collisions = (
+            np.zeros(0, session.simulation.collisions.dtype) if self._collisions is None
+            else self._collisions)
+        return Pair(kind, message.time_ns, bytes(message.data),
+                    self._encoders[kind](message.time_ns))
