@@ -48,6 +48,8 @@ class Encounters:
         self._flying = np.zeros(bodies.count, dtype=bool)
         self._solid = np.arange(bodies.count) >= bodies.moving_count
         self._horizon = np.inf
+        self._next = np.inf
+        """The earliest time [s] at which there is anything to do."""
         self.body_a = self.body_b = np.zeros(0, dtype=int)
         self.due = np.zeros(0)
         """(p,) [s]: the pair does not touch before; its touch itself where `found`."""
@@ -87,19 +89,16 @@ class Encounters:
 
     def next_touch(self, end):
         """Return the instant [s] of the first touch by `end` and its pairs a, b (p,), or None."""
-        while True:
-            if len(self.due):
-                first = int(np.argmin(self.due))
-                time = float(self.due[first])
-                if time <= min(end, self._horizon):
-                    if self.found[first]:
-                        rows = np.flatnonzero(self.found & (self.due <= time))
-                        return time, self.body_a[rows], self.body_b[rows]
-                    self._search(end)
-                    continue
-            if self._horizon > end:
-                return None
-            self._renew(self._horizon)
+        while self._next <= end:
+            time = self._next
+            if time == self._horizon:
+                self._renew(time)
+                continue
+            first = self.due == time
+            if self.found[first].all():
+                return time, self.body_a[first], self.body_b[first]
+            self._search(end)
+        return None
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -116,6 +115,7 @@ class Encounters:
         times[~found] = self._bounds(a[~found], b[~found], until)
         self.found[rows] = found
         self.due[rows] = times
+        self._next = min(self.due.min(), self._horizon)
 
     def _bounds(self, a, b, time):
         """Return the times [s], (p,), from `time` on, before which pairs cannot touch."""
@@ -177,3 +177,4 @@ class Encounters:
     def _put(self, body_a, body_b, due, found, guarded):
         self.body_a, self.body_b, self.due = body_a, body_b, due
         self.found, self._guarded = found, guarded
+        self._next = min(due.min(initial=np.inf), self._horizon)

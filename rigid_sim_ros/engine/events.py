@@ -46,6 +46,9 @@ COLLISION = np.dtype([
 ])
 """One event, with the conventions of this module."""
 
+NO_EVENTS = np.zeros(0, dtype=COLLISION)
+"""What most steps give."""
+
 
 class EventLog:
     """Events in the order in which they are found, handed out in order of time."""
@@ -75,7 +78,9 @@ class EventLog:
 
         Events of the same instant keep the order in which they were appended.
         """
-        rows = np.array(self._rows, dtype=np.float64).reshape(-1, 14)
+        if not self._rows:
+            return NO_EVENTS
+        rows = np.array(self._rows, dtype=np.float64)
         self._rows.clear()
         rows = rows[np.argsort(rows[:, 0], kind='stable')]
         events = np.zeros(len(rows), dtype=COLLISION)

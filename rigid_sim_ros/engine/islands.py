@@ -64,6 +64,8 @@ class Islands:
         self._world = world
         self._flights = flights
         count = world.bodies.moving_count
+        self.active = False
+        """Whether any body is in lasting contact and awake."""
         self.touching = np.zeros(count, dtype=bool)
         self.asleep = np.zeros(count, dtype=bool)
         self._mates = np.full(count, -1)
@@ -75,21 +77,15 @@ class Islands:
         """How far they may still come nearer to anything [m] before islands are made again."""
         self._pairs = LastingPairs(world)
 
-    @property
-    def active(self):
-        """Whether any body is in lasting contact and awake."""
-        return bool(self.touching.any())
-
     def step_end(self, time, end):
         """Return how far to go at once [s], at most to `end`: steps are equal and short enough."""
-        if not self.active:
-            return end
         steps = np.ceil((end - time) / self._world.max_step * (1 - 1e-9))
         return end if steps <= 1 else time + (end - time) / steps
 
     def add(self, indices):
         """From now on these bodies (k,) are in lasting contact."""
-        self.touching[indices] = True
+        if len(indices):
+            self.touching[indices] = self.active = True
 
     def wake(self, indices):
         """Wake those of bodies (k,) that sleep and all their mates; return who woke (m,)."""
@@ -145,6 +141,7 @@ class Islands:
         if len(changes.parting) or len(changes.resting):
             self.touching[changes.parting] = self.touching[changes.resting] = False
             self.asleep[changes.resting] = True
+            self.active = bool(self.touching.any())
         return changes
 
     def _current(self, members, start, end, state):

@@ -66,19 +66,22 @@ class Exact:
         """Advance by `duration` [s]: flights from touch to touch, islands in steps."""
         end = self.time + duration
         while self.time < end:
-            step_end = self._islands.step_end(self.time, end)
-            self._gather(step_end)
-            members = np.flatnonzero(self._islands.touching)
-            step_end = self._fly(step_end)
-            if len(members):
-                self._step(members, step_end)
-            self.time = step_end
+            if self._islands.active:
+                self._step_islands(self._islands.step_end(self.time, end))
+            else:
+                self.time = self._fly(end)
             self._state = None
+
+    def _step_islands(self, end):
+        """Advance everything to `end` [s] or to the first touch before it that lasts."""
+        self._gather(end)
+        members = np.flatnonzero(self._islands.touching)
+        end = self._fly(end)
+        self._step(members, end)
+        self.time = end
 
     def _gather(self, end):
         """Put those that may meet a body in lasting contact before `end` [s] in with it."""
-        if not self._islands.active:
-            return
         flying, sleeping = self._islands.reached(self.time, end, self.state)
         joining = np.concatenate((flying, self._islands.wake(sleeping)))
         if len(joining):
