@@ -73,14 +73,15 @@ setup(
         'ros': ROS_WHEELS,
         # pybullet has no wheels for later Pythons, and takes a quarter of an hour to build.
         'peers': ['mujoco', 'rapier3d', 'pybullet; python_version < "3.12"'],
-        'view': ['matplotlib', 'pillow'],
+        'view': ['matplotlib', 'pillow>=10.1', 'tqdm'],
         'test': ['pytest>=7.4', 'hypothesis', 'scipy', 'mpmath', 'rosbags', 'mcap-ros2-support',
-                 'catkin_pkg', *LINTERS],
+                 'catkin_pkg', 'pillow>=10.1', 'tqdm', *LINTERS],
     },
     zip_safe=True,
     entry_points={
         'console_scripts': [
             'rigid_sim_node = rigid_sim_ros.nodes.simulation_node:main',
+            'rigid_sim_view = rigid_sim_ros.view.command_line:main',
         ],
     },
 )

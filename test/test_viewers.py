@@ -62,7 +62,7 @@ def test_every_foxglove_panel_has_its_place_and_its_settings():
 
 def test_foxglove_paths_lead_to_numbers_and_texts():
     panels = foxglove()['configById']
-    shown = set(panels['3D!bodies']['topics']) | {panels['DiagnosticSummary!node']['topicToRender']}
+    shown = {*panels['3D!bodies']['topics'], panels['DiagnosticSummary!node']['topicToRender']}
     paths = [path['value'] for panel in panels.values() for path in panel.get('paths', ())]
     paths.append(panels['RawMessages!collisions']['topicPath'])
     assert shown | {path.split('.')[0] for path in paths} <= set(PUBLISHED)
