@@ -90,7 +90,8 @@ def _conserved(recording):
     They are those of all moving bodies; contact with what is fixed, gravity and commands change
     them, as they should.
     """
-    if not len(recording.time) or np.isnan(recording.linear_velocity).any():
+    known = np.isfinite(recording.linear_velocity).all(axis=(1, 2))
+    if not known.any():
         return
     try:
         scene = load_scene(recording.scene + '\n')
@@ -101,23 +102,24 @@ def _conserved(recording):
     bodies = bodies_of(scene)
     if bodies.names[:bodies.moving_count] != recording.names:
         return
-    values = _totals(bodies, np.array(scene.gravity), recording)
+    values = _totals(bodies, np.array(scene.gravity), recording, known)
+    # the first state of the run that each state belongs to
+    begin = np.searchsorted(recording.run[known], recording.run[known])
     yield ''
     yield f'{"":<18}{"at the start":>16}{"largest change":>16}{"at the end":>16}'
     for name, unit in (('energy', 'J'), ('momentum', 'N s'), ('angular momentum', 'N m s')):
-        first = values[name][0]
-        change = np.linalg.norm(values[name] - first, axis=1)
-        yield (f'{name:<18}{np.linalg.norm(first):>16.9g}{change.max():>16.3g}'
+        change = np.linalg.norm(values[name] - values[name][begin], axis=1)
+        yield (f'{name:<18}{np.linalg.norm(values[name][0]):>16.9g}{change.max():>16.3g}'
                f'{np.linalg.norm(values[name][-1]):>16.9g}  {unit}')
 
 
-def _totals(bodies, gravity, recording):
-    """Return energy (T, 1), momentum and angular momentum (T, 3) of all recorded states."""
-    state_count, body_count = recording.position.shape[:2]
+def _totals(bodies, gravity, recording, known):
+    """Return energy (T, 1), momentum and angular momentum (T, 3) of the known states."""
+    velocity, position = recording.linear_velocity[known], recording.position[known]
+    state_count, body_count = position.shape[:2]
     mass = 1 / bodies.inverse_mass[:body_count, np.newaxis]
-    velocity, position = recording.linear_velocity, recording.position
-    turn = rotation.matrix(recording.orientation.reshape(-1, 4).T)
-    rate = recording.angular_velocity.reshape(-1, 3).T
+    turn = rotation.matrix(recording.orientation[known].reshape(-1, 4).T)
+    rate = recording.angular_velocity[known].reshape(-1, 3).T
     inertia = np.tile(bodies.inertia[:, :body_count], state_count)
     spin = rotation.transform(turn, inertia * rotation.transform_transposed(turn, rate))
     spin_energy = 0.5 * np.sum(spin * rate, axis=0).reshape(state_count, body_count)

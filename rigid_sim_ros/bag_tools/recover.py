@@ -17,7 +17,7 @@
 import argparse
 import sys
 
-from rigid_sim_ros.recording import recover, RecordingError
+from rigid_sim_ros.recording import RecordingError, recover
 
 
 def main(arguments=None):

@@ -93,9 +93,9 @@ class McapFile:
             self._attach(name, media_type, data)
 
     @property
-    def pending_count(self):
-        """Return the number of messages in the chunk that is not written yet."""
-        return self._chunk_message_count
+    def has_messages(self):
+        """Whether a message was added."""
+        return bool(self._chunk_message_count or self.summary.counts)
 
     @property
     def chunk_size(self):

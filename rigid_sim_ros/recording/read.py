@@ -177,7 +177,8 @@ class _Collected:
             **_rates(self.states, source, rows.shape[1]),
             collisions=np.concatenate([np.zeros(0, COLLISION_TYPE), *self.collisions]),
             commands=self.commands,
-            scene=bag.scene() or self.scene, options=options, finished=not bag.unfinished, damage=tuple(bag.damage))
+            scene=bag.scene() or self.scene, options=options, finished=not bag.unfinished,
+            damage=tuple(bag.damage))
 
 
 _TAKERS = {

@@ -29,19 +29,16 @@ import os
 from threading import Condition, Thread
 from time import monotonic
 
-from rigid_sim_ros.recording.bag_metadata import (
-    bag_metadata, bag_topic, to_yaml, write_metadata)
+from rigid_sim_ros.recording.bag_metadata import bag_topic
+from rigid_sim_ros.recording.bag_writer import BagWriter
 from rigid_sim_ros.recording.errors import RecordingError
-from rigid_sim_ros.recording.mcap_file import COMPRESSIONS, McapFile
+from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
 
 RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
 """The phases of a recorder."""
 
 DROP, WAIT = 'drop', 'wait'
 """What `Recorder.write` does when the queue is full: count a lost message, or wait for room."""
-
-CHUNK_BYTES = 2**20
-"""A chunk is written when it has grown to so many bytes, or when its time is up."""
 
 _BATCH_SECONDS = 0.05
 """How long messages gather before the thread takes them, so that it seldom asks for the GIL."""
@@ -87,6 +84,12 @@ def package_version():
         return 'unknown'
 
 
+def _attachments(scene, options):
+    run = {**(options or {}), 'version': package_version()}
+    return (('scene.yaml', 'application/yaml', scene.encode()),
+            ('run.json', 'application/json', json.dumps(run).encode()))
+
+
 class Recorder:
     """
     A recording in the making; also a context manager that closes it.
@@ -123,24 +126,17 @@ class Recorder:
             raise RecordingError(f'compression is {compression!r}; allowed: '
                                  f'{", ".join(COMPRESSIONS)}')
         self.path = os.path.abspath(uri)
-        self._topics = tuple(bag_topic(row) for row in topics)
-        self._channels = {topic.name: number for number, topic in enumerate(self._topics, 1)}
-        self._compression, self._chunk_seconds = compression, chunk_seconds
-        self._max_bytes, self._max_ns = max_bytes, round(max_duration * 1e9)
+        topics = tuple(bag_topic(row) for row in topics)
+        self._channels = {topic.name: number for number, topic in enumerate(topics, 1)}
+        self._chunk_seconds = chunk_seconds
         self._queue_bytes, self._when_full = queue_bytes, when_full
-        run = {**(options or {}), 'version': package_version()}
-        self._attachments = (('scene.yaml', 'application/yaml', scene.encode()),
-                             ('run.json', 'application/json', json.dumps(run).encode()))
-        self._latched = {}
-        self._summaries = []
-        self._last_ns = 0
-        self._written_bytes = 0
         self._condition = Condition()
         self._queue = deque()
         self._queued_bytes = self._dropped_count = 0
         self._phase, self._error = RECORDING, ''
         self._closing_until = None
-        self._begin_bag()
+        self._bag = self._begin(topics, compression, _attachments(scene, options), max_bytes,
+                                round(max_duration * 1e9))
         self._thread = Thread(target=self._run, name='recorder', daemon=True)
         self._thread.start()
 
@@ -159,10 +155,8 @@ class Recorder:
         """Return a `RecorderState`."""
         with self._condition:
             return RecorderState(
-                self._phase, self.path, self._error,
-                sum(summary.message_count for summary in self._summaries),
-                self._written_bytes + self._file.size, len(self._queue), self._queued_bytes,
-                self._dropped_count)
+                self._phase, self.path, self._error, self._bag.message_count,
+                self._bag.byte_count, len(self._queue), self._queued_bytes, self._dropped_count)
 
     def write(self, topic_name, time_ns, data):
         """
@@ -203,18 +197,29 @@ class Recorder:
                        f'rigid_sim_recover {self.path} finishes the bag')
         return self.state()
 
+    def _begin(self, topics, *options):
+        try:
+            if os.path.lexists(self.path):
+                raise RecordingError(f'{self.path} is there already; a recording never replaces '
+                                     'another')
+            return BagWriter(self.path, topics, options[0], f'rigid_sim_ros {package_version()}',
+                             *options[1:])
+        except OSError as error:
+            raise RecordingError(
+                f'cannot record to {self.path}: {error.strerror or error}') from error
+
     # -- the thread ----------------------------------------------------------------------------
 
     def _run(self):
         try:
             self._write_until_closed()
-            self._end_bag()
+            self._bag.finish()
             with self._condition:
                 if self._phase == RECORDING:
                     self._phase = CLOSED
         except OSError as error:
             self._fail(error.strerror or str(error))
-            self._save_what_is_there()
+            self._bag.save()
         finally:
             with self._condition:
                 if self._phase == RECORDING:
@@ -229,16 +234,14 @@ class Recorder:
                 if self._out_of_time():
                     self._drop(len(batch) - index)
                     break
-                self._add(*message)
+                self._bag.add(*message)
             if batch and chunk_due is None:
                 # the oldest message may have waited for one batch and will wait for another
                 chunk_due = monotonic() + max(0.0, self._chunk_seconds - 2 * _BATCH_SECONDS)
             if chunk_due is not None and monotonic() >= chunk_due:
-                self._file.close_chunk()
-                self._file.sync()
+                self._bag.flush()
                 chunk_due = None
-            if not self._file.is_there():
-                raise FileNotFoundError(0, 'the file was removed')
+            self._bag.check()
             if self._closing_until is not None and not self._queue:
                 return
 
@@ -257,81 +260,8 @@ class Recorder:
             self._condition.notify_all()
         return batch
 
-    def _add(self, channel, time_ns, data):
-        if self._must_split(time_ns):
-            self._next_file()
-            self._start_ns = time_ns
-            for latched, latched_data in self._latched.items():
-                if latched != channel:
-                    self._file.add(latched, time_ns, latched_data)
-        self._last_ns = time_ns
-        self._file.add(channel, time_ns, data)
-        if self._topics[channel - 1].is_latched:
-            self._latched[channel] = data
-        if self._file.chunk_size >= CHUNK_BYTES:
-            self._file.close_chunk()
-
-    def _must_split(self, time_ns):
-        summary = self._file.summary
-        if not summary.message_count + self._file.pending_count:
-            self._start_ns = time_ns
-            return False
-        return (time_ns < self._last_ns
-                or 0 < self._max_ns <= time_ns - self._start_ns
-                or 0 < self._max_bytes <= self._file.size + self._file.chunk_size)
-
     def _out_of_time(self):
         return self._closing_until is not None and monotonic() > self._closing_until
-
-    # -- files ---------------------------------------------------------------------------------
-
-    def _begin_bag(self):
-        try:
-            if os.path.lexists(self.path):
-                raise RecordingError(f'{self.path} is there already; a recording never replaces '
-                                     'another')
-            os.makedirs(self.path)
-            self._open_file()
-            write_metadata(self.path, self._topics, self._summaries)
-        except OSError as error:
-            raise RecordingError(
-                f'cannot record to {self.path}: {error.strerror or error}') from error
-
-    def _open_file(self):
-        name = f'{os.path.basename(self.path)}_{len(self._summaries)}.mcap'
-        self._file = McapFile(
-            os.path.join(self.path, name), self._topics, self._compression,
-            f'rigid_sim_ros {package_version()}', self._attachments)
-        self._summaries.append(self._file.summary)
-        self._write_bag_metadata()
-
-    def _write_bag_metadata(self):
-        self._file.write_metadata('rosbag2', {
-            'serialized_metadata': to_yaml(bag_metadata(self._topics, self._summaries))})
-
-    def _next_file(self):
-        self._finish_file()
-        self._written_bytes += self._file.size
-        self._open_file()
-        write_metadata(self.path, self._topics, self._summaries)
-
-    def _finish_file(self):
-        self._file.close_chunk()
-        self._write_bag_metadata()
-        self._file.finish()
-
-    def _end_bag(self):
-        self._finish_file()
-        write_metadata(self.path, self._topics, self._summaries)
-
-    def _save_what_is_there(self):
-        """Finish the bag after a failure as far as the disk allows."""
-        try:
-            self._file.finish()
-            write_metadata(self.path, self._topics, self._summaries)
-        except (OSError, ValueError):
-            # nothing more can be written (or the file is closed): what is there stays as it is
-            self._file.abandon()
 
     def _fail(self, reason):
         with self._condition:

@@ -25,10 +25,10 @@ import os
 from rigid_sim_ros.recording.bag import bag_files
 from rigid_sim_ros.recording.bag_metadata import (
     bag_metadata, FileSummary, to_yaml, write_metadata)
+from rigid_sim_ros.recording.bag_writer import CHUNK_BYTES
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.mcap_file import is_being_written, McapFile
 from rigid_sim_ros.recording.mcap_scan import McapScan
-from rigid_sim_ros.recording.recorder import CHUNK_BYTES
 
 _COMPRESSION = 'zstd'
 

@@ -244,8 +244,8 @@ def test_a_write_that_fails_half_way_leaves_whole_records(tmp_path, run):
     recorder = run.recorder(tmp_path / 'bag', chunk_seconds=0.05)
     run.write(recorder, 0, 10)
     wait_until(lambda: recorder.state().message_count == 21)
-    size = recorder._file.size
-    recorder._file._stream = Half(recorder._file._stream)
+    size = recorder._bag._file.size
+    recorder._bag._file._stream = Half(recorder._bag._file._stream)
     run.write(recorder, 10, 20)
     wait_until(lambda: recorder.error)
     assert 'Input/output error' in recorder.close().error

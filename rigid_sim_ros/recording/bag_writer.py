@@ -1,0 +1,136 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Writes the files of a bag: `NAME_0.mcap`, `NAME_1.mcap` ... and metadata.yaml."""
+
+import os
+
+from rigid_sim_ros.recording.bag_metadata import bag_metadata, to_yaml, write_metadata
+from rigid_sim_ros.recording.mcap_file import McapFile
+
+CHUNK_BYTES = 2**20
+"""A chunk is written when it has grown to so many bytes, if its time is not up before."""
+
+
+class BagWriter:
+    """
+    A bag that is being written; every method may raise OSError.
+
+    Parameters
+    ----------
+    path : str
+        The folder, which must not be there yet.
+    topics : sequence of BagTopic
+        All that may be written; channels are their numbers from 1.
+    compression, library, attachments
+        As for `McapFile`.
+    max_bytes, max_ns : int
+        Size [bytes] and simulated time [ns] after which a new file begins; 0: never.
+
+    """
+
+    def __init__(self, path, topics, compression, library, attachments, max_bytes=0, max_ns=0):
+        self._path, self._topics = path, topics
+        self._compression, self._library = compression, library
+        self._attachments = attachments
+        self._max_bytes, self._max_ns = max_bytes, max_ns
+        self._latched = {}
+        self._summaries = []
+        self._finished_bytes = 0
+        self._start_ns = self._last_ns = 0
+        os.makedirs(path)
+        self._open_file()
+        self._write_sidecar()
+
+    @property
+    def message_count(self):
+        """Messages written to the disk."""
+        return sum(summary.message_count for summary in self._summaries)
+
+    @property
+    def byte_count(self):
+        """Bytes written to the disk."""
+        return self._finished_bytes + self._file.size
+
+    def add(self, channel, time_ns, data):
+        """Add a message; a time that goes back begins a new file."""
+        if not self._file.has_messages:
+            self._start_ns = time_ns
+        elif self._must_split(time_ns):
+            self._next_file()
+            self._start_ns = time_ns
+            # so that each file stands alone
+            for latched, latched_data in self._latched.items():
+                if latched != channel:
+                    self._file.add(latched, time_ns, latched_data)
+        self._last_ns = time_ns
+        self._file.add(channel, time_ns, data)
+        if self._topics[channel - 1].is_latched:
+            self._latched[channel] = data
+        if self._file.chunk_size >= CHUNK_BYTES:
+            self._file.close_chunk()
+
+    def flush(self):
+        """Put everything on the disk."""
+        self._file.close_chunk()
+        self._file.sync()
+
+    def check(self):
+        """Raise FileNotFoundError if the file was removed meanwhile."""
+        if not self._file.is_there():
+            raise FileNotFoundError(0, 'the file was removed')
+
+    def finish(self):
+        """Finish the last file and the sidecar."""
+        self._finish_file()
+        self._write_sidecar()
+
+    def save(self):
+        """Finish the bag after a failure, as far as the disk allows."""
+        try:
+            self._file.finish()
+            self._write_sidecar()
+        except (OSError, ValueError):
+            # nothing more can be written, or the file is closed: what is there stays as it is
+            self._file.abandon()
+
+    def _must_split(self, time_ns):
+        return (time_ns < self._last_ns
+                or 0 < self._max_ns <= time_ns - self._start_ns
+                or 0 < self._max_bytes <= self._file.size + self._file.chunk_size)
+
+    def _open_file(self):
+        name = f'{os.path.basename(self._path)}_{len(self._summaries)}.mcap'
+        self._file = McapFile(os.path.join(self._path, name), self._topics, self._compression,
+                              self._library, self._attachments)
+        self._summaries.append(self._file.summary)
+        self._write_bag_metadata()
+
+    def _next_file(self):
+        self._finish_file()
+        self._finished_bytes += self._file.size
+        self._open_file()
+        self._write_sidecar()
+
+    def _finish_file(self):
+        self._file.close_chunk()
+        self._write_bag_metadata()
+        self._file.finish()
+
+    def _write_bag_metadata(self):
+        self._file.write_metadata('rosbag2', {
+            'serialized_metadata': to_yaml(bag_metadata(self._topics, self._summaries))})
+
+    def _write_sidecar(self):
+        write_metadata(self._path, self._topics, self._summaries)
