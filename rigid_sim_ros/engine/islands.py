@@ -89,11 +89,12 @@ class Islands:
 
     def wake(self, indices):
         """Wake those of bodies (k,) that sleep and all their mates; return who woke (m,)."""
+        if not self.asleep[indices].any():
+            return indices[:0]
         woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
-        if len(woken):
-            self.asleep[woken] = False
-            self._mates[woken] = -1
-            self.add(woken)
+        self.asleep[woken] = False
+        self._mates[woken] = -1
+        self.add(woken)
         return woken
 
     def reached(self, start, end, state):

@@ -75,12 +75,12 @@ class Touches:
 
     def resolve(self, time, indices, body_a, body_b, margin=TOUCH_MARGIN):
         """
-        Return the `Touch` of moving bodies (m,) whose pairs (p,) may touch at `time` [s].
+        Return the `Touch` of the moving bodies (m,) whose pairs (p,) may touch at `time` [s].
 
         Groups of bodies that have nothing to do with each other are solved by themselves. Impulses
         are noted as events.
         """
-        self._place(time, np.concatenate((indices, body_b)))
+        self._place(time, np.array(sorted({*body_a.tolist(), *body_b.tolist()})))
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
         self._world.work.narrow_phases += len(body_a)
