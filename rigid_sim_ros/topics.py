@@ -225,7 +225,7 @@ JOURNAL = Command(
 
 SERVICES = (
     Service('~/pause', 'std_srvs/srv/SetBool', 'stop simulated time, or let it go on'),
-    Service('~/step', 'std_srvs/srv/Trigger', 'advance by one period while paused'),
+    Service('~/step', 'std_srvs/srv/Trigger', 'advance by `step_duration` while paused'),
     Service('~/reset', 'std_srvs/srv/Trigger', 'start again from the scene as loaded'),
     Service('~/record', 'std_srvs/srv/SetBool', 'start or stop a recording'),
 )

@@ -18,8 +18,10 @@ The node as a process of its own, and a real ROS client to talk to it.
 Every wait has an end: a node that hangs is killed, a message that does not come fails the test.
 """
 
+import itertools
 import os
 from pathlib import Path
+import random
 import signal
 import subprocess
 import sys
@@ -36,14 +38,24 @@ from rigid_sim_ros.topics import COMMANDS, PUBLISHED, SERVICES
 
 ROOT = Path(__file__).resolve().parents[2]
 
+HIGHEST_DOMAIN_ID = 101
+
 PATIENCE = 15.0
 """Wall time [s] to wait for what takes milliseconds on an idle machine."""
 
 TYPES = {row.name: row.type_name for row in (*PUBLISHED, *COMMANDS, *SERVICES)}
 
 
+_domain_ids = itertools.cycle(random.SystemRandom().sample(
+    range(1, HIGHEST_DOMAIN_ID + 1), HIGHEST_DOMAIN_ID))
+
+
 class NodeProcess:
-    """The node, started with parameters; its output goes to files in a folder."""
+    """
+    The node, started with parameters; its output goes to files in a folder.
+
+    Each has a domain of its own: one that was killed is remembered for a while by all others.
+    """
 
     def __init__(self, folder, arguments=(), **parameters):
         self.folder = Path(folder)
@@ -54,7 +66,8 @@ class NodeProcess:
             ros_arguments += ['-p', f'{name}:={text}']
         if not parameters:
             ros_arguments = list(arguments)
-        environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(
+        self.domain_id = next(_domain_ids)
+        environment = {**os.environ, 'ROS_DOMAIN_ID': str(self.domain_id), 'PYTHONPATH': os.pathsep.join(
             [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])}
         with open(self.folder / 'out', 'w') as out, open(self.folder / 'error', 'w') as error:
             self.process = subprocess.Popen(
@@ -118,7 +131,7 @@ class Client:
         self.name = name
         self._process = process
         self._context = Context()
-        rclpy.init(context=self._context)
+        rclpy.init(context=self._context, domain_id=process.domain_id if process else None)
         self.node = Node('test_client', context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)

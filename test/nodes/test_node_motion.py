@@ -75,6 +75,7 @@ def motion(running):
 def test_velocity_shows_within_one_message(motion):
     client, messages, _ = motion
     poses = client.listen('~/poses')
+    client.spin_until(lambda: poses, 'a state at rest')
     linear = np.array([2.0, -1.0, 0.5])
     client.command('~/cmd_vel', 'two', linear=linear, angular=(0, 0, 3))
     client.spin_until(lambda: poses and poses[-1].poses[1].position.x > 0.2, 'motion')
