@@ -52,16 +52,16 @@ $(READY): setup.py setup.cfg pyproject.toml
 	@rm -rf $(VENV)
 ifdef ROS
 	@$(PYTHON) -m venv --system-site-packages $(VENV)
-	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[test]' \
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[view,test]' \
 		"numpy==$$($(PYTHON) -c 'import numpy; print(numpy.__version__)')"
 else
 	@$(PYTHON) -m venv $(VENV)
-	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[ros,test]'
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[ros,view,test]'
 endif
 	@touch $@
 
 $(READY)_peers: $(READY)
-	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[peers,view]'
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[peers]'
 	@touch $@
 
 clean:

@@ -68,14 +68,14 @@ setup(
         *shared_files('launch'),
     ],
     python_requires='>=3.10',
-    install_requires=['numpy>=1.26', 'mcap>=1.2', 'PyYAML>=6.0'],
+    install_requires=['numpy>=1.26', 'mcap>=1.2', 'PyYAML>=6.0', 'tqdm'],
     extras_require={
         'ros': ROS_WHEELS,
         # pybullet has no wheels for later Pythons, and takes a quarter of an hour to build.
         'peers': ['mujoco', 'rapier3d', 'pybullet; python_version < "3.12"'],
-        'view': ['matplotlib', 'pillow>=10.1', 'tqdm'],
+        'view': ['matplotlib', 'pillow>=10.1'],
         'test': ['pytest>=7.4', 'hypothesis', 'scipy', 'mpmath', 'rosbags', 'mcap-ros2-support',
-                 'catkin_pkg', 'pillow>=10.1', 'tqdm', *LINTERS],
+                 'catkin_pkg', *LINTERS],
     },
     zip_safe=True,
     entry_points={

@@ -28,8 +28,9 @@ ROOT = Path(__file__).parents[1]
 MANIFEST = ElementTree.parse(ROOT / 'package.xml').getroot()
 
 # Names by which rosdep knows what pip calls otherwise.
-ROSDEP_KEYS = {'numpy': 'python3-numpy', 'PyYAML': 'python3-yaml', 'mcap': 'mcap-ros2-support',
-               'tqdm': 'python3-tqdm'}
+ROSDEP_KEYS = {
+    'matplotlib': 'python3-matplotlib', 'mcap': 'mcap-ros2-support', 'numpy': 'python3-numpy',
+    'pillow': 'python3-pil', 'PyYAML': 'python3-yaml', 'tqdm': 'python3-tqdm'}
 
 
 @pytest.fixture
@@ -89,8 +90,8 @@ def test_every_executable_has_its_function(setup_arguments):
 
 def test_rosdep_installs_what_pip_would(setup_arguments):
     keys = {node.text for node in MANIFEST.findall('exec_depend')}
-    needed = [line.split('>')[0].split('=')[0] for line in setup_arguments['install_requires']]
-    assert {ROSDEP_KEYS[name] for name in needed} <= keys
+    lines = setup_arguments['install_requires'] + setup_arguments['extras_require']['view']
+    assert {ROSDEP_KEYS[line.split('>')[0].split('=')[0]] for line in lines} <= keys
 
 
 def test_every_ros_package_in_use_is_a_dependency():
