@@ -61,19 +61,19 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
         plane = np.maximum(pairs_a[rows], pairs_b[rows])
         normal, offset = bodies.plane_normal[:, plane], bodies.plane_offset[plane]
         height = dot(normal, position[:, body]) - offset
-        result[rows] = first_fall(
+        result[rows] = first_falls(
             height - bodies.bounding_radius[body] - _CLOSER * (np.abs(height) + np.abs(offset)),
             dot(normal, velocity[:, body]), dot(normal, acceleration[:, body]))
     rows = np.flatnonzero(~with_plane)
     a, b = pairs_a[rows], pairs_b[rows]
-    result[rows] = _spheres(
+    result[rows] = sphere_meeting_times(
         bodies.bounding_radius.take(a) + bodies.bounding_radius.take(b),
         *(values.take(b, axis=1) - values.take(a, axis=1)
           for values in (position, velocity, acceleration)))
     return result
 
 
-def first_fall(height, speed, acceleration):
+def first_falls(height, speed, acceleration):
     """Return when, (p,) [s], height + speed t + acceleration t^2 / 2 first is not positive."""
     square = speed * speed - 2 * acceleration * height
     run = np.sqrt(np.maximum(square, 0.0)) - speed
@@ -82,7 +82,7 @@ def first_fall(height, speed, acceleration):
     return np.where(height <= 0, 0.0, time)
 
 
-def _spheres(reach, between, velocity, acceleration):
+def sphere_meeting_times(reach, between, velocity, acceleration):
     """Return when centres `between` (3, p), in relative motion, are within `reach` [m], (p,)."""
     distance = np.sqrt(dot(between, between))
     reach = reach + _CLOSER * (distance + reach)
@@ -111,8 +111,8 @@ def _march(reach, between, velocity, acceleration):
         there = between + now * (velocity + 0.5 * now * acceleration)
         distance = np.sqrt(dot(there, there))
         direction = there / np.where(distance > 0, distance, 1.0)
-        time = time + first_fall(distance - reach, dot(direction, velocity + now * acceleration),
-                                 dot(direction, acceleration))
+        speed = dot(direction, velocity + now * acceleration)
+        time = time + first_falls(distance - reach, speed, dot(direction, acceleration))
     return time
 
 
@@ -122,7 +122,7 @@ def _meeting_time(bodies, a, b, position, velocity, acceleration):
         column = [values[:, b:b + 1] - values[:, a:a + 1]
                   for values in (position, velocity, acceleration)]
         reach = bodies.bounding_radius.item(a) + bodies.bounding_radius.item(b)
-        return _spheres_time(reach, *(values.ravel().tolist() for values in column))
+        return _sphere_meeting_time(reach, *(values.ravel().tolist() for values in column))
     body, plane = min(a, b), max(a, b)
     nx, ny, nz = bodies.plane_normal[:, plane].tolist()
     offset = bodies.plane_offset.item(plane)
@@ -131,11 +131,11 @@ def _meeting_time(bodies, a, b, position, velocity, acceleration):
         for values in (position, velocity, acceleration))
     height -= offset
     gap = height - bodies.bounding_radius.item(body) - _CLOSER * (abs(height) + abs(offset))
-    return first_fall_of_one(gap, speed, pull)
+    return first_fall(gap, speed, pull)
 
 
-def first_fall_of_one(height, speed, acceleration):
-    """Return `first_fall` of plain floats."""
+def first_fall(height, speed, acceleration):
+    """Return `first_falls` of plain floats."""
     if height <= 0:
         return 0.0
     square = speed * speed - 2 * acceleration * height
@@ -145,11 +145,12 @@ def first_fall_of_one(height, speed, acceleration):
     return 2 * height / run if run > 0 else inf
 
 
-def _spheres_time(reach, between, velocity, acceleration):
-    """Return `_spheres` of one pair in plain floats, vectors (3,)."""
+def _sphere_meeting_time(reach, between, velocity, acceleration):
+    """Return `sphere_meeting_times` of one pair in plain floats, vectors (3,)."""
     if any(acceleration):
-        return float(_spheres(np.array([reach]), *(np.array(values)[:, np.newaxis] for values in
-                                                   (between, velocity, acceleration)))[0])
+        columns = (np.array(values)[:, np.newaxis]
+                   for values in (between, velocity, acceleration))
+        return sphere_meeting_times(np.array([reach]), *columns).item()
     x, y, z = between
     u, v, w = velocity
     distance = sqrt(x * x + y * y + z * z)

@@ -16,7 +16,7 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.broad_phase.meeting import first_fall
+from rigid_sim_ros.engine.broad_phase.meeting import first_falls
 from rigid_sim_ros.engine.broad_phase.sphere_grid import spheres_with_others, spheres_with_spheres
 from rigid_sim_ros.engine.rotation import dot
 
@@ -81,7 +81,7 @@ def swept_pairs(bodies, flying, solid, position, velocity, acceleration):
         height, speed, pull = (normal @ values for values in motion)
         height = height - bodies.plane_offset[plane] - radius
         # 1e-9: a bound must not be lost by rounding
-        reached = movers[first_fall(height - 1e-9 * radius, speed, pull) <= horizon * (1 + 1e-9)]
+        reached = movers[first_falls(height - 1e-9 * radius, speed, pull) <= horizon * (1 + 1e-9)]
         pairs.append((reached, np.full(len(reached), plane)))
     return *(np.concatenate(side) for side in zip(*pairs)), horizon
 

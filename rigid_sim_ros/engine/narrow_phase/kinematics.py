@@ -37,6 +37,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_sim_ros.engine.contacts import EDGES, FACE_A, ROUND
+from rigid_sim_ros.engine.narrow_phase.separating_axes import product_rate
 from rigid_sim_ros.engine.rotation import cross, dot
 
 
@@ -126,8 +127,8 @@ def _normal_rate(contacts, bodies, a, b, slip, between):
     rate = cross(spin, normal)
     crossing = np.flatnonzero(contacts.feature == EDGES)
     if len(crossing):
-        rate[:, crossing] = _edges_normal_rate(contacts.select(crossing), a.spin[:, crossing],
-                                               b.spin[:, crossing])
+        rate[:, crossing] = product_rate(*(values[:, crossing] for values in (
+            contacts.edge_a, contacts.edge_b, normal, a.spin, b.spin)))
     curved = np.flatnonzero(_curved(contacts, bodies, a, b))
     if len(curved):
         normal, between, spin = normal[:, curved], between[:, curved], spin[:, curved]
@@ -138,15 +139,6 @@ def _normal_rate(contacts, bodies, a, b, slip, between):
         around -= edge * dot(edge, around)
         rate[:, curved] += around / dot(normal, between)
     return rate
-
-
-def _edges_normal_rate(contacts, spin_a, spin_b):
-    """Return dn/dt, (3, k), of the normal +-(e_a x e_b)/|e_a x e_b|."""
-    edge_a, edge_b, normal = contacts.edge_a, contacts.edge_b, contacts.normal
-    # signed so that dividing by it also turns e_a x e_b into the direction of the normal
-    length = dot(cross(edge_a, edge_b), normal)
-    rate = (cross(cross(spin_a, edge_a), edge_b) + cross(edge_a, cross(spin_b, edge_b))) / length
-    return rate - normal * dot(normal, rate)
 
 
 def _curved(contacts, bodies, a, b):

@@ -30,9 +30,10 @@ _SWAPPED_FEATURE[[FACE_A, FACE_B]] = FACE_B, FACE_A
 
 
 @dataclass
-class _Group:
+class Group:
     """Pairs of the same kinds: a row of the table and the two sides, in its order."""
 
+    kinds: tuple
     row: PairOfShapes
     swapped: bool
     """Whether the caller's a is the row's b."""
@@ -60,17 +61,19 @@ class PairGroups:
     def __init__(self, bodies, pairs_a, pairs_b):
         self.pairs_a = np.asarray(pairs_a, dtype=int)
         self.pairs_b = np.asarray(pairs_b, dtype=int)
-        self._groups = []
+        self.groups = []
         for kinds, where in _by_kinds(bodies.kinds, self.pairs_a, self.pairs_b).items():
             swapped = kinds not in PAIRS
-            row = PAIRS.get(kinds[::-1] if swapped else kinds)
+            kinds = kinds[::-1] if swapped else kinds
+            row = PAIRS.get(kinds)
             if row is None:
-                raise ValueError(f'{kinds[0]} and {kinds[1]} cannot meet; allowed: {list(PAIRS)}')
+                raise ValueError(f'{kinds[1]} and {kinds[0]} cannot meet; allowed: {list(PAIRS)}')
             for start in range(0, len(where), CHUNK):
                 part = where[start:start + CHUNK]
                 a = Solids.gather(bodies, self.pairs_a[part])
                 b = Solids.gather(bodies, self.pairs_b[part])
-                self._groups.append(_Group(row, swapped, part, *((b, a) if swapped else (a, b))))
+                sides = (b, a) if swapped else (a, b)
+                self.groups.append(Group(kinds, row, swapped, part, *sides))
 
     def find_contacts(self, position, orientation, margin):
         """
@@ -88,7 +91,7 @@ class PairGroups:
         """
         margin = np.broadcast_to(np.asarray(margin, dtype=float), self.pairs_a.shape)
         parts = []
-        for group in self._groups:
+        for group in self.groups:
             contacts = group.row.contacts(group.a.placed(position, orientation),
                                           group.b.placed(position, orientation),
                                           margin[group.where])
@@ -103,7 +106,7 @@ class PairGroups:
         Overlapping: minus the shortest way out.
         """
         result = np.empty(len(self.pairs_a))
-        for group in self._groups:
+        for group in self.groups:
             result[group.where] = group.row.separation(group.a.placed(position, orientation),
                                                        group.b.placed(position, orientation))
         return result

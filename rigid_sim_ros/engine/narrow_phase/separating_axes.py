@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigid_sim_ros.engine.rotation import matrix, transform_transposed
+from rigid_sim_ros.engine.rotation import cross, dot, matrix, transform_transposed
 
 PARALLEL = 1e-7
 """Edges with a smaller sine of the angle between them are not tried: their product is noise."""
@@ -66,6 +66,56 @@ class Axes:
         """Return the largest of all 15 distances [m], (p,)."""
         return np.maximum(np.maximum(self.faces_a.max(axis=0), self.faces_b.max(axis=0)),
                           self.edges.max(axis=0))
+
+    def best(self):
+        """Return the `Direction` of the largest distance."""
+        best = np.concatenate((self.faces_a, self.faces_b, self.edges)).argmax(axis=0)
+        column = np.arange(len(best))
+        of_face_a, of_face_b = best < 3, (best >= 3) & (best < 6)
+        # rows are the faces of a, those of b, then all products, b's axis counting fastest
+        axis_a = self.rotation_a[:, np.where(of_face_a, best, (best - 6) // 3), column]
+        axis_b = self.rotation_b[:, best % 3, column]
+        product = cross(axis_a, axis_b)
+        length = np.where(of_face_a | of_face_b, 1.0, np.sqrt(dot(product, product)))
+        normal = np.where(of_face_a, axis_a, np.where(of_face_b, axis_b, product / length))
+        outward = dot(transform_transposed(self.rotation_a, normal), self.offset_a)
+        return Direction(normal * np.copysign(1.0, outward), of_face_a, of_face_b, axis_a, axis_b)
+
+
+@dataclass
+class Direction:
+    """The axis along which each of p pairs of boxes is apart the most."""
+
+    normal: np.ndarray
+    """(3, p) unit vectors, world axes, from a to b."""
+
+    of_face_a: np.ndarray
+    """(p,) bool: it is the normal of a face of a."""
+
+    of_face_b: np.ndarray
+    """(p,) bool: it is the normal of a face of b; otherwise the product of an edge of each."""
+
+    edge_a: np.ndarray
+    """(3, p) unit vector along the edge of a, world axes, where it is a product."""
+
+    edge_b: np.ndarray
+    """(3, p), likewise of b."""
+
+    def rate(self, spin_a, spin_b):
+        """Return how the normals turn, (3, p) [1/s], with the rates (3, p) [rad/s] of both."""
+        return np.where(
+            self.of_face_a, cross(spin_a, self.normal),
+            np.where(self.of_face_b, cross(spin_b, self.normal),
+                     product_rate(self.edge_a, self.edge_b, self.normal, spin_a, spin_b)))
+
+
+def product_rate(edge_a, edge_b, normal, spin_a, spin_b):
+    """Return dn/dt, (3, p), of normals n = +-(a x b)/|a x b| of edges that turn."""
+    # signed so that dividing by it also turns a x b into the direction of the normal
+    length = dot(cross(edge_a, edge_b), normal)
+    rate = cross(cross(spin_a, edge_a), edge_b) + cross(edge_a, cross(spin_b, edge_b))
+    rate = rate / np.where(length == 0, np.inf, length)
+    return rate - normal * dot(normal, rate)
 
 
 def separating_axes(a, b):

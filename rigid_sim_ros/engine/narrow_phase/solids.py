@@ -56,9 +56,18 @@ class Solids:
 
     def placed(self, position, orientation):
         """Return the same at these poses of all bodies, (3, n) [m] and (4, n)."""
+        return self.at(position.take(self.index, axis=1), orientation.take(self.index, axis=1))
+
+    def at(self, center, orientation):
+        """Return the same at these poses, (3, p) [m] and (4, p)."""
         return Solids(self.index, self.half_extents, self.bounding_radius, self.plane_normal,
-                      self.plane_offset, position.take(self.index, axis=1),
-                      orientation.take(self.index, axis=1))
+                      self.plane_offset, center, orientation)
+
+    def select(self, pairs):
+        """Return some of the pairs, (q,) int, without poses."""
+        return Solids(self.index.take(pairs), self.half_extents.take(pairs, axis=1),
+                      self.bounding_radius.take(pairs), self.plane_normal.take(pairs, axis=1),
+                      self.plane_offset.take(pairs))
 
     @property
     def radius(self):

@@ -27,7 +27,7 @@ from rigid_sim_ros.engine.rotation import dot, transform, transform_transposed
 
 def separation(a, b):
     """Return the distances [m], (p,), of the surfaces; negative in penetration."""
-    return _nearest(b.rotation(), a, b)[1]
+    return nearest(b.rotation(), a, b)[1]
 
 
 def contacts(a, b, margin):
@@ -37,7 +37,7 @@ def contacts(a, b, margin):
     Where the sphere meets an edge of the box, `edge_b` is along it.
     """
     matrix = b.rotation()
-    outward, gap, beyond = _nearest(matrix, a, b)
+    outward, gap, beyond = nearest(matrix, a, b)
     near = np.flatnonzero(gap < margin)
     matrix, gap, beyond = matrix[:, :, near], gap[near], beyond[:, near]
     normal = -transform(matrix, outward[:, near])
@@ -49,7 +49,7 @@ def contacts(a, b, margin):
                     np.full(len(near), ROUND), np.zeros_like(normal), edge)
 
 
-def _nearest(matrix, a, b):
+def nearest(matrix, a, b):
     """
     Return where the sphere is, seen from the box.
 
