@@ -43,11 +43,11 @@ times the time. What rests or repeats shrinks as much at this level.
 """
 
 COMPRESSIONS = {
-    'none': ('', bytes),
-    'lz4': ('lz4', lz4.frame.compress),
-    'zstd': ('zstd', lambda data: zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(data)),
+    'none': ('', lambda: bytes),
+    'lz4': ('lz4', lambda: lz4.frame.compress),
+    'zstd': ('zstd', lambda: zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress),
 }
-"""The name in the file and the function, by the name users give."""
+"""The name in the file and what makes the function, by the name users give."""
 
 _MESSAGE = struct.Struct('<BQHIQQ')
 _MESSAGE_FIELDS = 22
@@ -77,7 +77,8 @@ class McapFile:
     """
 
     def __init__(self, path, topics, compression, library, attachments=()):
-        self._format, self._compress = COMPRESSIONS[compression]
+        self._format, make_compress = COMPRESSIONS[compression]
+        self._compress = make_compress()
         self._stream = open(path, 'xb', buffering=0)
         _lock(self._stream)
         self.size = 0

@@ -43,7 +43,7 @@ DROP, WAIT = 'drop', 'wait'
 _BATCH_SECONDS = 0.05
 """How long messages gather before the thread takes them, so that it seldom asks for the GIL."""
 
-_BATCH_BYTES = 2**19
+_BATCH_BYTES = 2**22
 
 _MESSAGE_OVERHEAD = 200
 """Bytes a queued message costs besides its data."""
