@@ -234,3 +234,13 @@ def test_each_pair_has_its_own_start_and_nothing_after_the_end_counts():
     assert touch(flying, 0, 3, end=9.9) == np.inf
     assert first_touches(flying.bodies, flying.flights, np.zeros(0, int), np.zeros(0, int), 0.0,
                          1.0, np.zeros(0, bool)).shape == (0,)
+
+
+def test_bodies_may_be_in_many_more_pairs_than_there_are_bodies():
+    count = 150
+    planes = [((0.0, 0, 1), -offset) for offset in range(4)]
+    flying = Flying([Cube(0.5)] * count, planes, position=[(0, 0, 5.0)] * count,
+                    velocity=[(0, 0, -1.0)] * count)
+    a, b = np.repeat(np.arange(count), 4), np.tile(np.arange(count, count + 4), count)
+    times = first_touches(flying.bodies, flying.flights, a, b, 0.0, 20.0, np.zeros(len(a), bool))
+    assert times == pytest.approx(np.tile((4.75, 5.75, 6.75, 7.75), count), rel=1e-15)
