@@ -46,6 +46,21 @@ PATIENCE = 15.0
 TYPES = {row.name: row.type_name for row in (*PUBLISHED, *COMMANDS, *SERVICES)}
 
 
+CROWD = """
+gravity: [0, 0, 0]
+material: {restitution: 0.9, friction: 0.3}
+bodies:
+""" + ''.join(
+    f"""  - {{name: cube_{number + 1}, cube: {{edge: 0.2}}, mass: 1.0,
+     position: [{0.6 * (number % 4)}, {0.6 * (number // 4)}, 0], rpy: [{number}, 0.3, 0],
+     velocity: [{0.9 - 0.6 * (number % 4)}, {0.6 - 0.6 * (number // 4)}, 0],
+     angular_velocity: [1, {number}, 2]}}
+""" for number in range(10))
+"""
+Ten cubes that fly towards their middle without gravity and bounce off each other within a second.
+Cheap to simulate, since nothing touches for long.
+"""
+
 _domain_ids = itertools.cycle(random.SystemRandom().sample(
     range(1, HIGHEST_DOMAIN_ID + 1), HIGHEST_DOMAIN_ID))
 

@@ -22,7 +22,7 @@ import pytest
 
 pytest.importorskip('rclpy')
 
-from node_harness import Client, NodeProcess  # noqa: E402, I100
+from node_harness import Client, CROWD, NodeProcess  # noqa: E402, I100
 from rigid_sim_ros.recording import Bag  # noqa: E402
 
 DURATION_NS = 1_500_000_000
@@ -55,8 +55,10 @@ def waiting(diagnostics):
 
 def run(folder, factor):
     """Return what a run recorded, by topic, up to a simulated time."""
+    folder.mkdir()
+    (folder / 'crowd.yaml').write_text(CROWD)
     depths = {DEPTH.format(name): 1000 for name in ('cmd_vel', 'cmd_force')}
-    with NodeProcess(folder, scene='ten_cubes', start_paused=True, command_timing='stamp',
+    with NodeProcess(folder, scene='crowd.yaml', start_paused=True, command_timing='stamp',
                      real_time_factor=factor, record=True, record_path=folder / 'bag',
                      **depths) as process, Client(process) as client:
         diagnostics = client.listen('/diagnostics')

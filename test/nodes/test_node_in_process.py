@@ -55,6 +55,7 @@ def hosted(*namespaces, executor=EVENTS, **parameters):
     """Give nodes, and a function that runs them until a condition holds."""
     context = Context()
     rclpy.init(context=context)
+    parameters.setdefault('scene', 'report_dynamics')
     overrides = [Parameter(name, value=value) for name, value in parameters.items()]
     nodes = [SimulationNode(StopRequest(), context=context, namespace=namespace,
                             parameter_overrides=overrides) for namespace in namespaces]
@@ -107,7 +108,7 @@ def test_both_executors_serve(executor):
         poses = client.listen('~/poses')
         publisher = client.node.create_publisher(TwistStamped, '/rigid_sim/cmd_vel', 10)
         run(publisher.get_subscription_count)
-        publisher.publish(TwistStamped(header=Header(frame_id='cube_1')))
+        publisher.publish(TwistStamped(header=Header(frame_id=node.session.simulation.names[0])))
         run(lambda: node.session.commands.taken == 1)
         start = time.monotonic()
         count = len(client.poll(poses))
@@ -117,7 +118,7 @@ def test_both_executors_serve(executor):
 
 
 def test_two_nodes_in_one_process_and_one_clock():
-    with hosted('left', 'right', scene='report_dynamics') as (nodes, run), \
+    with hosted('left', 'right') as (nodes, run), \
             Client() as client:
         received = {name: [] for name in ('left', 'right')}
         for name, messages in received.items():
@@ -129,8 +130,7 @@ def test_two_nodes_in_one_process_and_one_clock():
 
 
 def test_nodes_that_start_together_settle_on_one_clock():
-    scene = {'scene': 'report_dynamics'}
-    with hosted('left', **scene) as ([left], _), hosted('right', **scene) as ([right], _):
+    with hosted('left') as ([left], _), hosted('right') as ([right], _):
         def clock_count():
             return len(left.ros.get_publishers_info_by_topic('/clock'))
 
@@ -143,6 +143,6 @@ def test_nodes_that_start_together_settle_on_one_clock():
 
 
 def test_both_publish_the_clock_if_told_to():
-    with hosted('left', 'right', publish_clock=True, scene='report_dynamics') as (nodes, run):
+    with hosted('left', 'right', publish_clock=True) as (nodes, run):
         run(lambda: nodes[0].session.time > 1_200_000_000)
         assert len(nodes[0].ros.get_publishers_info_by_topic('/clock')) == 2

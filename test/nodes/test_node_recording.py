@@ -24,7 +24,7 @@ import pytest
 pytest.importorskip('rclpy')
 rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
-from node_harness import Client, nanoseconds, NodeProcess  # noqa: E402, I100
+from node_harness import Client, CROWD, nanoseconds, NodeProcess  # noqa: E402, I100
 from rclpy.serialization import deserialize_message  # noqa: E402
 from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
 
@@ -45,7 +45,8 @@ def path_in(text):
 
 @pytest.mark.parametrize('signals', [(signal.SIGINT, signal.SIGINT), (signal.SIGTERM,)])
 def test_recording_is_what_was_published_and_complete(tmp_path, signals):
-    with NodeProcess(tmp_path, scene='ten_cubes', record=True, record_path=tmp_path / 'bag',
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    with NodeProcess(tmp_path, scene='crowd.yaml', record=True, record_path=tmp_path / 'bag',
                      start_paused=True) as process, Client(process) as client:
         received = client.listen('~/poses', raw=True)
         assert client.call('~/pause', data=False).success
@@ -74,7 +75,8 @@ def test_recording_is_what_was_published_and_complete(tmp_path, signals):
 
 
 def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
-    with NodeProcess(tmp_path, scene='ten_cubes', record_path='bag') as process, \
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    with NodeProcess(tmp_path, scene='crowd.yaml', record_path='bag') as process, \
             Client(process) as client:
         poses = client.listen('~/poses')
         client.spin_until(lambda: poses, 'a state')
