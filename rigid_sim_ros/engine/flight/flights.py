@@ -18,10 +18,12 @@ import numpy as np
 
 from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
 from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
-from rigid_sim_ros.engine.flight.fixed_axis import fixed_axes, fixed_axis, FixedAxisRotations
+from rigid_sim_ros.engine.flight.fixed_axis import (
+    BLOCK, fixed_axes, fixed_axis, FixedAxisRotations)
 from rigid_sim_ros.engine.flight.free_rotation import FreeRotations
 from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
 from rigid_sim_ros.engine.flight.plain_rotation import normalized
+from rigid_sim_ros.engine.flight.recycled_arrays import RecycledArrays
 from rigid_sim_ros.engine.flight.translations import Translations
 
 FIXED_AXIS, FREE, DRIVEN_EQUAL, DRIVEN_UNEQUAL = range(4)
@@ -51,11 +53,13 @@ class Flights:
         self._moments = self._inertia.T.tolist()
         count = self._inertia.shape[1]
         self._kind = np.zeros(count, dtype=np.int8)
+        self._arrays = RecycledArrays()
         self._translations = Translations(count)
         self._fixed_axis = FixedAxisRotations(count)
         self._others = {FREE: FreeRotations(count),
                         DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
                         DRIVEN_UNEQUAL: DrivenRotations(unequal_moments, count)}
+        self._rotations = tuple(self._others.values())
 
     @property
     def acceleration(self):
@@ -99,11 +103,14 @@ class Flights:
 
         Of the bodies `indices`, (k,), or of all n; no body may start later than `time`.
         """
-        elapsed = self._elapsed(time, indices)
-        position = np.empty((3, len(elapsed)))
-        orientation = np.empty((4, len(elapsed)))
-        self._translations.positions(elapsed, indices, position)
-        self._fixed_axis.orientations(elapsed, indices, orientation)
+        count = len(self._kind) if indices is None else len(indices)
+        position, orientation = self._arrays.take(3, count), self._arrays.take(4, count)
+        if indices is None and count > BLOCK:
+            for start in range(0, count, BLOCK):
+                block = slice(start, start + BLOCK)
+                self._write_poses(time, block, position[:, block], orientation[:, block])
+        else:
+            self._write_poses(time, indices, position, orientation)
         for rotations in self._present():
             rotations.write_orientations(time, indices, orientation)
         return position, orientation
@@ -197,6 +204,12 @@ class Flights:
 
     # -- inside --------------------------------------------------------------------------------
 
+    def _write_poses(self, time, indices, position, orientation):
+        """Write poses of bodies (k,), a slice or None for all, as if all axes stayed."""
+        elapsed = self._elapsed(time, indices)
+        self._translations.positions(elapsed, indices, position)
+        self._fixed_axis.orientations(elapsed, indices, orientation)
+
     def _begin_one(self, body, time, position, orientation, velocity, rate, acceleration, torque):
         """Start a flight of one body, vectors (3,) and (4,) in plain floats."""
         self._translations.begin_one(body, time, position, velocity, acceleration)
@@ -226,10 +239,10 @@ class Flights:
         self._kind[indices] = kind
 
     def _elapsed(self, time, indices):
-        """Return the times [s] since the starts of bodies (k,), None for all."""
+        """Return the times [s] since the starts of bodies (k,), a slice or None for all."""
         start = self._translations.start
         return time - (start if indices is None else start[indices])
 
     def _present(self):
         """Return the kinds of rotation other than about a fixed axis that some body has."""
-        return [rotations for rotations in self._others.values() if rotations.count]
+        return [rotations for rotations in self._rotations if rotations.count]

@@ -25,7 +25,8 @@ from rigid_sim_ros.engine.flight import hyperbolic, trigonometric
 from rigid_sim_ros.engine.flight.fixed_axis import ROUNDING
 from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
 from rigid_sim_ros.engine.flight.packed_columns import PackedColumns
-from rigid_sim_ros.engine.flight.plain_rotation import product, to_body, to_world
+from rigid_sim_ros.engine.flight.plain_rotation import (
+    normalized, product, to_body, to_world)
 from rigid_sim_ros.engine.flight.polhode import polhode_of_many, polhode_of_one
 
 START, RATE, RATE_BOUND, DERIVATIVE_BOUND, WORLD, BODY_RATE, MOTION = (
@@ -124,7 +125,9 @@ class FreeRotations:
         column = table.column(body)
         elapsed = time - column[START]
         pair = _unit_pair(FLOATS, form.pair(FLOATS, column[MOTION], elapsed))
-        quaternion = _applied(column[WORLD], pair)
+        x, y, z, w = _applied(column[WORLD], pair)
+        scale = 1.5 - 0.5 * (x * x + y * y + z * z + w * w)
+        quaternion = x * scale, y * scale, z * scale, w * scale
         if elapsed == 0:
             return quaternion, tuple(column[RATE])
         return quaternion, to_world(quaternion, _applied(column[BODY_RATE], _momentum(pair)))
@@ -134,7 +137,7 @@ class FreeRotations:
         form, table = self._form_of(body)
         column = table.column(body)
         pair = form.pair(ARRAYS, column[MOTION], times - column[START])
-        return np.array(column[WORLD]).reshape(4, 4) @ np.array(_unit_pair(ARRAYS, pair))
+        return _orientations(np.array(column)[:, None], _unit_pair(ARRAYS, pair))
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -154,10 +157,9 @@ class FreeRotations:
 def _column(functions, form, polhode, time, quaternion, rate):
     """Return all constants of a rotation, a list of floats or of arrays (k,)."""
     constants = form.rows(functions, polhode)
-    x, y, z, w = product(quaternion, polhode.axes)
-    a, b, c, d = _unit_pair(functions, form.pair(functions, constants, 0.0 * rate[0]))
-    # the frame of the momentum is so placed that the start is exact: world = q axes conj(pair)
-    world = product((x, y, z, w), (-b, -c, -d, a))
+    w, x, y, z = _unit_pair(functions, form.pair(functions, constants, 0.0 * rate[0]))
+    # the frame of the momentum is so placed that the start is exact
+    world = normalized(functions, product(product(quaternion, polhode.axes), (-x, -y, -z, w)))
     p, q, r, s = polhode.axes
     columns = [product(product(world, unit), (-p, -q, -r, s)) for unit in UNITS]
     return [time, *rate, *(bound * ROUNDING for bound in polhode.rate_bounds(functions)),
@@ -188,7 +190,10 @@ def _orientations(columns, pair):
     """Return the quaternions, (4, k), of pairs of arrays (k,)."""
     matrix = columns[WORLD].reshape(4, 4, -1)
     w, x, y, z = pair
-    return matrix[:, 0] * w + matrix[:, 1] * x + matrix[:, 2] * y + matrix[:, 3] * z
+    quaternion = matrix[:, 0] * w + matrix[:, 1] * x + matrix[:, 2] * y + matrix[:, 3] * z
+    # the matrix is orthogonal to rounding only; one Newton step for 1 / length
+    quaternion *= 1.5 - 0.5 * (quaternion * quaternion).sum(axis=0)
+    return quaternion
 
 
 def _applied(matrix, vector):

@@ -161,10 +161,12 @@ def _polhode(functions, axes, momentum, moments, direction):
     sn = sign * across / divisor
     cn = functions.where(on_axis, 1.0, m1 / divisor)
     phase = sn * carlson_rf(functions, cn * cn, cn * cn + complementary * sn * sn)
+    # 1 / i3 + sign spread (1 - A3), written without cancellation: thin rods have a huge spread
+    twist = functions.where(sign > 0, 1 / i3 + spread * amplitude1 ** 2 / (1 + amplitude3),
+                            1 / i1 + spread * amplitude3)
     return Polhode(
         order=order, axes=quaternion, signs=signs, sign=sign, momentum=momentum,
         moments=moments, f1=f1, f2=f2, amplitude1=amplitude1, amplitude3=amplitude3,
         square=square, complementary=complementary,
         speed=momentum * amplitude3 * spread * functions.sqrt(f2), phase=phase, backward=cn < 0,
-        twist=0.5 * momentum * (
-            1 / i3 + sign * spread * amplitude1 * amplitude1 / (1 + amplitude3)))
+        twist=0.5 * momentum * twist)

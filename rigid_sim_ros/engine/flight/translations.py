@@ -25,9 +25,11 @@ class Translations:
     """Centres of mass under constant acceleration; one column a body, all at rest at first."""
 
     def __init__(self, body_count):
+        """Make a table of bodies at rest at the origin."""
         self._table = np.zeros((13, body_count))
         self._accelerates = False
         self.start = self._table[START]
+        self._all = tuple(self._table[rows] for rows in (POSITION, VELOCITY, HALF_ACCELERATION))
         self.acceleration = self._table[ACCELERATION]
 
     def begin_one(self, body, time, position, velocity, acceleration):
@@ -46,19 +48,20 @@ class Translations:
         self._accelerates = self._accelerates or bool(acceleration.any())
 
     def positions(self, elapsed, indices, out):
-        """Write the positions [m] of bodies (k,), None for all, to `out` (3, k)."""
-        table = self._columns(indices)
+        """Write the positions [m] of bodies (k,), a slice or None for all, to `out` (3, k)."""
+        position, velocity, half_acceleration = (
+            self._all if indices is None else [part[:, indices] for part in self._all])
         if self._accelerates:
-            np.multiply(table[HALF_ACCELERATION], elapsed, out=out)
-            out += table[VELOCITY]
+            np.multiply(half_acceleration, elapsed, out=out)
+            out += velocity
             out *= elapsed
         else:
-            np.multiply(table[VELOCITY], elapsed, out=out)
-        out += table[POSITION]
+            np.multiply(velocity, elapsed, out=out)
+        out += position
 
     def velocities(self, elapsed, indices):
         """Return the velocities [m/s] of bodies (k,), None for all, (3, k)."""
-        table = self._columns(indices)
+        table = self._table if indices is None else self._table[:, indices]
         if self._accelerates:
             return table[ACCELERATION] * elapsed + table[VELOCITY]
         return table[VELOCITY].copy()
@@ -67,7 +70,8 @@ class Translations:
         """Return the positions [m] of one body at times (K,), (3, K)."""
         column = self._table[:, body, None]
         elapsed = times - column[START]
-        return (column[HALF_ACCELERATION] * elapsed + column[VELOCITY]) * elapsed + column[POSITION]
+        velocity = column[HALF_ACCELERATION] * elapsed + column[VELOCITY]
+        return velocity * elapsed + column[POSITION]
 
     def motion_of_one(self, body, time):
         """Return the time since the start, position and velocity of one body, plain floats."""
@@ -75,6 +79,3 @@ class Translations:
         t = time - start
         return (t, (x + t * (u + t * a), y + t * (v + t * b), z + t * (w + t * c)),
                 (u + 2 * a * t, v + 2 * b * t, w + 2 * c * t))
-
-    def _columns(self, indices):
-        return self._table if indices is None else self._table.take(indices, axis=1)
