@@ -1,0 +1,40 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The executable rigid_sim_player."""
+
+import sys
+
+from rigid_sim_ros.nodes.signals import StopRequest
+
+
+def main(arguments=None):
+    """
+    Play a recording until its end or a signal, and return the exit code.
+
+    0 at the end and after Ctrl-C or SIGTERM, 2 for what the user got wrong, with one line on
+    stderr.
+    """
+    stop = StopRequest()
+    stop.install()
+    # imported only now, as in the node: Ctrl-C shall be quiet from the start
+    from rigid_sim_ros.nodes.playing import run
+    try:
+        return run(sys.argv if arguments is None else arguments, stop)
+    finally:
+        stop.ignore()
+
+
+if __name__ == '__main__':
+    sys.exit(main())
