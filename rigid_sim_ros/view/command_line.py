@@ -49,7 +49,7 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run the command; return its exit code: 0, or 2 after one line that says what is wrong."""
-    options = _parser().parse_args(_joined(sys.argv[1:] if arguments is None else arguments))
+    options = read_arguments(sys.argv[1:] if arguments is None else arguments)
     try:
         # what draws is an extra, and --help works without it
         from rigid_sim_ros.view.show import show
@@ -65,6 +65,11 @@ def main(arguments=None):
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def read_arguments(arguments):
+    """Return the options that arguments (a list of str) stand for, or end with exit code 2."""
+    return _parser().parse_args(_joined(arguments))
 
 
 def _parser():

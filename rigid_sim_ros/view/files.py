@@ -23,8 +23,10 @@ import subprocess
 
 from PIL import Image
 from rigid_sim_ros.view.errors import ViewError
+from rigid_sim_ros.view.labels import CONTACT_COLOR
 
 PALETTE_SIZE = 256
+"""Colours of a GIF."""
 
 
 @contextmanager
@@ -52,8 +54,7 @@ def write_gif(path, frames, frame_rate):
     """Write PIL images, one after the other as they come, as a GIF that repeats for ever."""
     frames = iter(frames)
     first = next(frames)
-    # one palette for all: colours of their own for each frame would flicker
-    palette = first.quantize(PALETTE_SIZE)
+    palette = _palette(first)
 
     def reduced(image):
         return image.quantize(palette=palette, dither=Image.Dither.NONE)
@@ -61,6 +62,18 @@ def write_gif(path, frames, frame_rate):
     with written(path) as partial:
         reduced(first).save(partial, save_all=True, append_images=map(reduced, frames),
                             duration=round(1000 / frame_rate), loop=0)
+
+
+def _palette(image):
+    """
+    Return an image with the colours for all frames: those of one of them, and of contacts.
+
+    Frames with colours of their own would flicker.
+    """
+    colors = image.quantize(PALETTE_SIZE - 1).getpalette()[:3 * (PALETTE_SIZE - 1)]
+    palette = Image.new('P', (1, 1))
+    palette.putpalette([*colors, *CONTACT_COLOR])
+    return palette
 
 
 def write_mp4(path, frames, frame_rate):

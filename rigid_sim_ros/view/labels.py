@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw, ImageFont
 OVERSIZE = 3
 """How much larger lines are drawn before they are made smaller, so that they are smooth."""
 
-CONTACT_COLOR = (214, 20, 20, 255)
+CONTACT_COLOR = (214, 20, 20)
 AXES = (('x', (190, 50, 40)), ('y', (50, 140, 50)), ('z', (40, 80, 200)))
 TEXT_COLOR = (40, 40, 40)
 
@@ -93,16 +93,22 @@ class Labels:
     # -- contacts ------------------------------------------------------------------------------
 
     def _draw_contacts(self, draw, contacts):
-        """Draw a dot where bodies met, and the impulse on each of them that moves."""
-        for event in contacts:
-            size = np.linalg.norm(event['impulse'])
-            direction = event['impulse'] / size if size > 0 else np.zeros(3)
-            for body, sign in ((event['body_a'], -1), (event['body_b'], 1)):
-                if size > 0 and body < self._moving_count:
-                    self._contact_arrow(draw, event['point'], sign * direction)
-            x, y, depth = self._camera.project(event['point'][np.newaxis])
-            if depth[0] > 0:
-                self._dot(draw, np.array((x[0], y[0])))
+        """Draw a dot at every contact, and the impulse of each pair on those of it that move."""
+        pairs = np.unique(contacts[['body_a', 'body_b']])
+        for pair in pairs:
+            events = contacts[contacts[['body_a', 'body_b']] == pair]
+            impulse = events['impulse'].sum(axis=0)
+            size = np.linalg.norm(impulse)
+            if size > 0:
+                # one arrow where they act together: four at the corners of a face only confuse
+                weight = np.linalg.norm(events['impulse'], axis=1)
+                point = weight @ events['point'] / weight.sum()
+                for body, sign in ((pair['body_a'], -1), (pair['body_b'], 1)):
+                    if body < self._moving_count:
+                        self._contact_arrow(draw, point, sign / size * impulse)
+        x, y, depth = self._camera.project(contacts['point'])
+        for at in np.stack((x, y), axis=1)[depth > 0]:
+            self._dot(draw, at)
 
     def _contact_arrow(self, draw, point, direction):
         x, y, depth = self._camera.project(np.stack((point, point + self._length * direction)))
@@ -111,7 +117,7 @@ class Labels:
             self._arrow(draw, start, end, CONTACT_COLOR, 0.8)
 
     def _dot(self, draw, at):
-        radius = 0.9 * self._unit * OVERSIZE
+        radius = 0.7 * self._unit * OVERSIZE
         at = at * OVERSIZE
         draw.ellipse((*(at - radius), *(at + radius)), fill=CONTACT_COLOR)
 

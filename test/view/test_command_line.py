@@ -24,6 +24,7 @@ from PIL import Image, ImageSequence
 import pytest
 from rigid_sim_ros.view import command_line, show
 from rigid_sim_ros.view.command_line import main
+from rigid_sim_ros.view.labels import CONTACT_COLOR
 
 SMALL = ['--size', '96x64']
 
@@ -79,6 +80,10 @@ def test_a_gif_shows_real_time(tmp_path):
     assert [duration for duration, _ in frames] == [70] * 9
     assert frames[0][1].size == (96, 64)
     assert frames[0][1].tobytes() != frames[-1][1].tobytes()
+    # the first frame, which gives the colours, has no contact; those of 1.35 and 1.42 s do
+    shown = [CONTACT_COLOR in {color for _, color in frame.getcolors(96 * 64)}
+             for _, frame in frames]
+    assert shown == [False] * 5 + [True] * 2 + [False] * 2
 
 
 def fake_ffmpeg(folder, script):
@@ -182,7 +187,7 @@ def test_help_has_examples_that_are_understood(capsys):
     for line in command_line.EXAMPLES.splitlines()[1:]:
         program, *arguments = shlex.split(line)
         assert program == 'rigid_sim_view'
-        assert command_line._parser().parse_args(command_line._joined(arguments)).source
+        assert command_line.read_arguments(arguments).source
 
 
 def test_without_the_extra_it_is_named(tmp_path, monkeypatch, capsys):
