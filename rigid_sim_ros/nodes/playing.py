@@ -30,7 +30,6 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from std_srvs.srv import SetBool, Trigger
-import yaml
 
 from rigid_sim_ros.messages import encode_clock
 from rigid_sim_ros.nodes.executors import AUTO, make_executor
@@ -39,6 +38,7 @@ from rigid_sim_ros.nodes.playback import Playback
 from rigid_sim_ros.nodes.running import drive, USER_ERROR
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.topics import PUBLISHED, Quality
+import yaml
 
 EXECUTABLE = 'rigid_sim_player'
 
