@@ -29,7 +29,6 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
-from std_srvs.srv import SetBool, Trigger
 
 from rigid_sim_ros.messages import encode_clock
 from rigid_sim_ros.nodes.executors import AUTO, make_executor
@@ -38,6 +37,7 @@ from rigid_sim_ros.nodes.playback import Playback
 from rigid_sim_ros.nodes.running import drive, USER_ERROR
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.topics import PUBLISHED, Quality
+from std_srvs.srv import SetBool, Trigger
 import yaml
 
 EXECUTABLE = 'rigid_sim_player'
