@@ -149,9 +149,10 @@ def test_the_ground_hides_what_is_below_it_but_not_a_view_from_below():
     below = body(Cube(0.4), (0, 0, -1.0))
     color, cover, _ = draw([below], [GROUND], (270, 30))
     assert not cover.any()
-    color, cover, camera = draw([below], [GROUND], (270, -30))
-    assert cover.any()
-    assert_shows(at(color, camera, (0, -0.2, -1.05)), 0)
+    above = body(Cube(0.4), (0, 0, 0.3))
+    color, cover, camera = draw([above], [GROUND], (270, -60))
+    assert camera.position[2] < 0 and cover.any()
+    assert_shows(at(color, camera, (0.03, 0.03, 0.1)), 0)
 
 
 def test_fixed_bodies_are_grey():
