@@ -17,6 +17,7 @@
 import ast
 from importlib.util import find_spec
 from pathlib import Path
+import re
 import runpy
 import sys
 import types
@@ -104,7 +105,9 @@ def test_every_ros_package_in_use_is_a_dependency():
                     imported |= {alias.name.split('.')[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and not node.level:
                     imported.add(node.module.split('.')[0])
-    assert 'rclpy' in imported
+    topics = (ROOT / 'rigid_sim_ros' / 'topics.py').read_text(encoding='utf-8')
+    imported |= set(re.findall(r"'(\w+)/(?:msg|srv)/\w+'", topics))
+    assert {'rclpy', 'geometry_msgs', 'std_srvs'} <= imported
     assert imported - standard <= {node.text for node in MANIFEST.findall('exec_depend')}
 
 
