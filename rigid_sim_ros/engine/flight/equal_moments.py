@@ -133,9 +133,11 @@ def motion_of_one(functions, constants, unit, series, time, fraction):
 def rate_bound(constants, start, end):
     """Return upper bounds of |w|, (k,), of bodies with constants (., k) between times (k,)."""
     rate, growth = np.array(constants[RATE]), np.array(constants[GROWTH])
-    ends = (rate + growth * (time - constants[START]) for time in (start, end))
+    ends = (rate + growth * (np.where(np.isinf(time), 0.0, time) - constants[START])
+            for time in (start, end))
     # the rate moves along a line, so it is largest at an end
-    return ROUNDING * np.maximum(*(np.sqrt((vector * vector).sum(axis=0)) for vector in ends))
+    bound = np.maximum(*(np.sqrt((vector * vector).sum(axis=0)) for vector in ends))
+    return np.where(np.isinf(end), np.inf, ROUNDING * bound)
 
 
 def rate_derivative_bound(constants, start, end):

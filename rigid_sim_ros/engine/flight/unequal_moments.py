@@ -203,7 +203,10 @@ def rate_bound(constants, start, end):
     L_i^2 f_i is largest with L_i^2 at both ends: |w|^2 <= (f_max + f_min) e^2 - f_max f_min L^2.
     """
     moments, rate, torque = (np.array(constants[rows]) for rows in (MOMENTS, RATE, TORQUE))
-    elapsed = np.maximum(start - constants[START], 0.0), end - constants[START]
+    # without an end there is no bound; any finite time will do meanwhile
+    for_ever = np.isinf(end)
+    elapsed = (np.maximum(start - constants[START], 0.0),
+               np.where(for_ever, start, end) - constants[START])
     most, least = 1 / moments.min(axis=0), 1 / moments.max(axis=0)
     # momentum and torque in the body's axes at the start: the directions do not matter here
     momentum = moments * rate
@@ -213,7 +216,8 @@ def rate_bound(constants, start, end):
     smallest = _square(momentum + torque * nearest)
     energy = (np.sqrt((momentum * rate).sum(axis=0)) + np.sqrt(push * most) * elapsed[1]) ** 2
     bounds = most * most * square, most * energy, (most + least) * energy - most * least * smallest
-    return ROUNDING * np.sqrt(np.minimum(np.minimum(bounds[0], bounds[1]), bounds[2]))
+    bound = ROUNDING * np.sqrt(np.minimum(np.minimum(bounds[0], bounds[1]), bounds[2]))
+    return np.where(for_ever, np.inf, bound)
 
 
 def rate_derivative_bound(constants, start, end):
