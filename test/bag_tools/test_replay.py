@@ -1,0 +1,218 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Recordings made as the node makes them, simulated again."""
+
+from dataclasses import replace
+import struct
+
+import numpy as np
+import pytest
+from rigid_sim_ros import messages, topics
+from rigid_sim_ros.bag_tools import info, recover, replay
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.nodes.command_readers import READERS
+from rigid_sim_ros.nodes.session import Session
+from rigid_sim_ros.recording import Recorder
+from rigid_sim_ros.recording.journal import encode_parameters, encode_reset
+from rigid_sim_ros.scene import dump_scene, load_scene
+
+SCENE = """
+gravity: [0, 0, -9.81]
+bodies:
+  - {name: ball, sphere: {radius: 0.1}, mass: 2.0, position: [0, 0, 100]}
+  - {name: cube, cube: {edge: 0.2}, mass: 1.0, position: [3, 0, 100], angular_velocity: [1, 2, 3]}
+"""
+
+
+class Recorded:
+    """A session that records itself as the node does."""
+
+    def __init__(self, path, scene=SCENE, method='exact'):
+        loaded = load_scene(scene)
+        simulation = Simulation(loaded, method)
+        self.session = Session(simulation, 100.0, self._publish)
+        self._source = topics.Source(simulation, 'world', dump_scene(loaded))
+        rows = [replace(row, name=topics.resolve(row.name))
+                for row in (*topics.PUBLISHED, *topics.COMMANDS, topics.JOURNAL)]
+        self.recorder = Recorder(
+            path, rows, scene=self._source.scene_text,
+            options={'names': simulation.names, 'all_names': simulation.all_names,
+                     'method': method, 'max_step': simulation.max_step})
+        self._encoders = {row.name: row.encoder(self._source) for row in topics.PUBLISHED}
+
+    def __enter__(self):
+        self.write('~/journal', encode_parameters('world', 0.0))
+        self.session.publish_now()
+        return self
+
+    def __exit__(self, *exception):
+        self.recorder.close()
+
+    def write(self, name, data, time=None):
+        self.recorder.write(topics.resolve(name), self.session.time if time is None else time,
+                            data)
+
+    def advance(self, count):
+        for _ in range(count):
+            self.session.advance()
+
+    def command(self, name, body, *vector):
+        data = stamped(body, *vector)
+        self.session.commands.carry_out(READERS[name]()(data)[1], self.session.time)
+        self.write(name, data)
+
+    def schedule(self, name, time, body, *vector):
+        """Command something for a time before the next state."""
+        data = stamped(body, *vector)
+        self.session.commands.schedule(READERS[name]()(data)[1], time, 0, self.session.time)
+        self.write(name, data, time)
+
+    def _publish(self, time, collisions):
+        self._source.collisions = collisions
+        for name in ('~/poses', '~/states', *(['~/collisions'] if len(collisions) else [])):
+            self.write(name, self._encoders[name](time), time)
+
+
+def stamped(frame_id, *vector):
+    name = frame_id.encode() + b'\0'
+    body = struct.pack('<iII', 0, 0, len(name)) + name
+    return b'\0\1\0\0' + body + bytes(-len(body) % 8) + np.array(vector, '<f8').tobytes()
+
+
+@pytest.fixture
+def eventful(tmp_path):
+    """Return a bag with commands of all kinds, changed parameters and both kinds of reset."""
+    with Recorded(tmp_path / 'bag') as run:
+        run.advance(5)
+        run.command('~/cmd_vel', 'cube', 1, 2, 3, 0.1, 0.2, 0.3)
+        run.command('~/cmd_torque', 'cube', 0.001, 0.002, 0.003)
+        run.advance(5)
+        run.write('~/journal', encode_parameters('body', 0.037))
+        run.session.commands.axes, run.session.commands.timeout = 'body', 0.037
+        run.command('~/cmd_wrench', 'cube', 1, 0, 0, 0, 0.001, 0)
+        run.schedule('~/cmd_force', run.session.time + 3_333_333, 'ball', 5, 0, 0)
+        run.advance(10)
+        run.write('~/journal', encode_reset(False))
+        run.session.reset(False)
+        run.advance(3)
+        run.session.step(0.0123)
+        run.write('~/journal', encode_reset(True), 0)
+        run.session.reset(True)
+        run.advance(5)
+    return tmp_path / 'bag'
+
+
+def test_a_run_with_commands_and_resets_is_identical(eventful, capsys):
+    assert replay.main([str(eventful)]) == 0
+    output = capsys.readouterr().out
+    assert output.startswith('identical: ')
+    # 5 + 5 + 10 + 3 + 2 + 5 advances, and the states at the start and after both resets
+    assert f'{2 * (30 + 3)} messages up to 0.050000000 s' in output
+
+
+def test_bouncing_with_the_baseline_method_is_identical_collisions_too(tmp_path, capsys):
+    scene = SCENE.replace('100]', '0.3]').replace('sphere: {radius: 0.1}', 'cube: {edge: 0.2}')
+    scene += 'planes: [{name: ground}]\n'
+    with Recorded(tmp_path / 'bag', scene, 'report') as run:
+        run.advance(60)
+    assert replay.main([str(tmp_path / 'bag')]) == 0
+    assert info.main([str(tmp_path / 'bag')]) == 0
+    assert 'ball, ground' in capsys.readouterr().out
+
+
+def test_a_command_that_was_not_recorded_shows_as_the_first_difference(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag') as run:
+        run.advance(3)
+        run.session.simulation.set_velocity('cube', linear=(0.5, 0, 0))
+        run.advance(1)
+    assert replay.main([str(tmp_path / 'bag')]) == 1
+    output = capsys.readouterr().out
+    # from x = 3 m with 0.5 m/s for 10 ms, as recorded; at rest, as simulated
+    assert output.startswith('different: 0.040000000 s: cube: position [3.005, 0.0, ')
+    assert ' recorded, [3.0, 0.0, ' in output
+
+
+def test_the_difference_to_another_method_is_that_of_theory(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag') as run:
+        run.advance(100)
+    plot = tmp_path / 'plot.png'
+    code = replay.main([str(tmp_path / 'bag'), '--with', 'method=stepped,max_step=0.01',
+                        '--plot', str(plot)])
+    assert code == 1
+    lines = capsys.readouterr().out.splitlines()
+    deviation = float(lines[0].split('largest deviation ')[1].split()[0])
+    # semi-implicit Euler falls too far by g h t / 2 (sum of h^2 g n)
+    assert deviation == pytest.approx(9.81 * 0.01 * 1.0 / 2, rel=1e-5)
+    assert 'at 1.000000000 s' in lines[0]
+    assert plot.stat().st_size > 1000 or 'no plot' in lines[-1]
+
+
+@pytest.mark.parametrize('text, reason', [
+    ('step=1', "--with 'step=1'; allowed: method=..., max_step=..."),
+    ('max_step=x', "--with 'max_step=x'; allowed: a number"),
+    ('method=none', "method is 'none'; allowed: exact"),
+    ('max_step=-1', 'max_step is -1.0 s; allowed: a positive number')])
+def test_settings_that_do_not_exist_are_one_line(eventful, capsys, text, reason):
+    assert replay.main([str(eventful), '--with', text]) == 2
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert error.startswith('rigid_sim_replay: ') and reason in error
+
+
+def test_a_recording_from_the_middle_of_a_run_cannot_be_simulated_again(tmp_path, capsys):
+    run = Recorded(tmp_path / 'bag')
+    run.session._time = 10_000_000
+    with run:
+        pass
+    assert replay.main([str(tmp_path / 'bag')]) == 2
+    assert 'begins at 0.010000000 s of a run' in capsys.readouterr().err
+
+
+def test_a_recording_without_a_scene_cannot_be_simulated_again(tmp_path, capsys):
+    with Recorder(tmp_path / 'bag', [replace(topics.PUBLISHED[0], name='/poses')]) as recorder:
+        encoder = messages.PoseArrayEncoder('world', 1)
+        recorder.write('/poses', 0, encoder.encode(0, np.zeros((1, 3)), np.ones((1, 4))))
+    assert replay.main([str(tmp_path / 'bag')]) == 2
+    assert 'holds no scene, method and max_step' in capsys.readouterr().err
+
+
+def test_info_tells_topics_and_what_is_conserved(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag', SCENE.replace('-9.81', '0')) as run:
+        run.advance(100)
+    assert info.main([str(tmp_path / 'bag')]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any('/rigid_sim/poses [geometry_msgs/msg/PoseArray]' in line for line in lines)
+    start, change, end = map(float, next(
+        line for line in lines if line.startswith('energy')).split()[1:4])
+    # a free cube: m l^2 / 6 w^2 / 2 = 0.04 / 6 * 14 / 2 J, and it stays
+    assert start == end == pytest.approx(0.04 / 6 * 14 / 2, rel=1e-8)
+    assert change < 1e-15
+    start = float(next(line for line in lines if line.startswith('angular')).split()[2])
+    assert start == pytest.approx(0.04 / 6 * np.sqrt(14), rel=1e-8)
+
+
+@pytest.mark.parametrize('program', [info, recover, replay])
+def test_no_bag_is_one_line_and_exit_code_2(program, tmp_path, capsys):
+    assert program.main([str(tmp_path / 'none')]) == 2
+    output = capsys.readouterr()
+    assert len(output.err.strip().splitlines()) == 1
+    assert 'none' in output.err
+
+
+def test_recover_says_what_it_did(eventful, capsys):
+    file = sorted(eventful.glob('*.mcap'))[-1]
+    file.write_bytes(file.read_bytes()[:-100])
+    assert recover.main([str(eventful)]) == 0
+    assert f'{file.name} finished with ' in capsys.readouterr().out
+    assert replay.main([str(eventful)]) == 0
