@@ -122,7 +122,7 @@ def _meeting_time(bodies, a, b, position, velocity, acceleration):
         column = [values[:, b:b + 1] - values[:, a:a + 1]
                   for values in (position, velocity, acceleration)]
         reach = bodies.bounding_radius.item(a) + bodies.bounding_radius.item(b)
-        return _sphere_meeting_time(reach, *(values.ravel().tolist() for values in column))
+        return sphere_meeting_time(reach, *(values.ravel().tolist() for values in column))
     body, plane = min(a, b), max(a, b)
     nx, ny, nz = bodies.plane_normal[:, plane].tolist()
     offset = bodies.plane_offset.item(plane)
@@ -145,7 +145,7 @@ def first_fall(height, speed, acceleration):
     return 2 * height / run if run > 0 else inf
 
 
-def _sphere_meeting_time(reach, between, velocity, acceleration):
+def sphere_meeting_time(reach, between, velocity, acceleration):
     """Return `sphere_meeting_times` of one pair in plain floats, vectors (3,)."""
     if any(acceleration):
         columns = (np.array(values)[:, np.newaxis]

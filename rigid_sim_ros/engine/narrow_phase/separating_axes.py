@@ -112,9 +112,11 @@ class Direction:
 def product_rate(edge_a, edge_b, normal, spin_a, spin_b):
     """Return dn/dt, (3, p), of normals n = +-(a x b)/|a x b| of edges that turn."""
     # signed so that dividing by it also turns a x b into the direction of the normal
-    length = dot(cross(edge_a, edge_b), normal)
-    rate = cross(cross(spin_a, edge_a), edge_b) + cross(edge_a, cross(spin_b, edge_b))
-    rate = rate / np.where(length == 0, np.inf, length)
+    sine = dot(cross(edge_a, edge_b), normal)
+    # (w_a x a) x b + a x (w_b x b), multiplied out
+    rate = (edge_a * dot(spin_a, edge_b) - edge_b * dot(spin_b, edge_a)
+            + (spin_b - spin_a) * dot(edge_a, edge_b))
+    rate = rate / np.where(sine == 0, np.inf, sine)
     return rate - normal * dot(normal, rate)
 
 

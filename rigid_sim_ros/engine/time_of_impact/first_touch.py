@@ -16,10 +16,22 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.narrow_phase import find_contacts, PairGroups
+from rigid_sim_ros.engine.bodies import PLANE
+from rigid_sim_ros.engine.narrow_phase import find_contacts, PairGroups, PAIRS
 from rigid_sim_ros.engine.narrow_phase.solids import smaller_size
 from rigid_sim_ros.engine.time_of_impact.march import march
 from rigid_sim_ros.engine.time_of_impact.pair_lines import PairLines
+from rigid_sim_ros.engine.time_of_impact.plain_boxes import box_box
+from rigid_sim_ros.engine.time_of_impact.plain_lines import (
+    box_plane, PlainBody, sphere_box, sphere_plane, sphere_sphere)
+from rigid_sim_ros.engine.time_of_impact.plain_march import march_one
+
+FEW = 8
+"""Up to so many pairs are searched one by one in plain floats, which is faster (measured)."""
+
+PLAIN_LINES = {('box', 'box'): box_box, ('box', PLANE): box_plane, ('sphere', 'box'): sphere_box,
+               ('sphere', PLANE): sphere_plane, ('sphere', 'sphere'): sphere_sphere}
+"""The same rows as `pair_lines.LINES`."""
 
 TOUCH_MARGIN = 1e-9
 """Points nearer than this part of the size meet at the same instant."""
@@ -56,13 +68,42 @@ def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
     """
     start = np.broadcast_to(np.asarray(start, dtype=float), np.shape(pairs_a))
     guarded = np.asarray(guarded, dtype=bool)
+    if len(pairs_a) <= FEW:
+        return np.array([
+            _first_touch(bodies, flights, a, b, began, end, [not untold])
+            for a, b, began, untold in zip(*(np.asarray(values).tolist() for values in (
+                pairs_a, pairs_b, start, guarded)))], dtype=float)
     times = np.full(len(pairs_a), np.inf)
     for group in PairGroups(bodies, pairs_a, pairs_b).groups:
-        began = start[group.where]
-        lines = PairLines(group.kinds, flights, group.a, group.b, began.min(), end)
-        times[group.where] = march(lines, smaller_size(group.a, group.b), began, end,
-                                   guarded[group.where])
+        where = group.where
+        lines = PairLines(group.kinds, flights, group.a, group.b, start[where].min(), end)
+        times[where], rest, reached, armed = march(
+            lines, smaller_size(group.a, group.b), start[where], end, guarded[where], FEW)
+        for place, pair in enumerate(rest.tolist()):
+            times[where[pair]] = _first_touch(
+                bodies, flights, group.a.index.item(pair), group.b.index.item(pair),
+                reached.item(place), end, armed[:, place].tolist())
     return times
+
+
+def _first_touch(bodies, flights, a, b, start, end, armed):
+    """Return the first touch [s] of one pair, in plain floats."""
+    kinds = bodies.kinds[a], bodies.kinds[b]
+    if kinds not in PAIRS:
+        a, b, kinds = b, a, kinds[::-1]
+    if kinds not in PAIRS:
+        raise ValueError(f'{kinds[1]} and {kinds[0]} cannot meet; allowed: {list(PAIRS)}')
+    index = np.array((a, b))
+    spins, changes = (bound(index, start, end).tolist() for bound in (
+        flights.rate_bound, flights.rate_derivative_bound))
+    one = PlainBody(bodies, flights, a, spins[0], changes[0])
+    if kinds[1] == PLANE:
+        other = bodies.plane_normal[:, b].tolist(), bodies.plane_offset.item(b)
+        size = one.radius
+    else:
+        other = PlainBody(bodies, flights, b, spins[1], changes[1]),
+        size = min(one.radius, other[0].radius)
+    return march_one(PLAIN_LINES[kinds](one, *other, end), size, start, end, armed)
 
 
 def touching_contacts(bodies, flights, pairs_a, pairs_b, time):

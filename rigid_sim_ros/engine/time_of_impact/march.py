@@ -81,9 +81,12 @@ class Lines:
     """(q,) [m]: the lengths that were subtracted from each other for the heights."""
 
 
-def march(lines, size, start, end, guarded):
+def march(lines, size, start, end, guarded, few):
     """
     Return the times [s], (p,), of first touches, infinite where there is none by `end`.
+
+    Also what is not decided yet once no more than `few` pairs are left: which they are, (q,), the
+    times they are free of touches until, (q,), and which lines are armed, (m, q).
 
     Parameters
     ----------
@@ -93,17 +96,20 @@ def march(lines, size, start, end, guarded):
     start : (p,) [s]
     end : float [s]
     guarded : (p,) bool
+    few : int
 
     """
     result = np.full(len(size), np.inf)
     pairs, time = np.arange(len(size)), start
     hovering = np.zeros(len(size), dtype=int)
-    armed = ~guarded
-    while len(pairs):
+    armed = ~guarded[np.newaxis]
+    while len(pairs) > few:
         now = lines(pairs, time)
         unit = size[pairs]
-        armed = armed | _arming(now, unit)
-        height = now.height + np.where(armed, 0.0, RELEASE * unit)
+        height = now.height
+        if not armed.all():
+            armed = armed | _arming(now, unit)
+            height = height + np.where(armed, 0.0, RELEASE * unit)
         step, falling = _safe_step(now, height)
         reached = time + step
         hovering = np.where(height.min(axis=0) < ARM * unit, hovering + 1, 0)
@@ -114,7 +120,7 @@ def march(lines, size, start, end, guarded):
         pairs, hovering, armed = pairs[going], hovering[going], armed[:, going]
         # at least to the next number: what rises slowly from zero must not stop the march
         time = np.maximum(reached, np.nextafter(time, np.inf))[going]
-    return result
+    return result, pairs, time, armed
 
 
 def _arming(now, unit):
@@ -131,7 +137,10 @@ def _safe_step(now, height):
     first = steps.argmin(axis=0), np.arange(steps.shape[1])
     step, falling = np.minimum(steps[first], now.limit), now.speed[first] <= 0
     if now.held_speed is not None:
-        step = np.maximum(step, _ends(height, now.held_speed, now.held_pull).min(axis=0))
+        far = np.flatnonzero(step == now.limit)
+        if len(far):
+            held = _ends(height[:, far], now.held_speed[:, far], now.held_pull[far])
+            step[far] = np.maximum(step[far], held.min(axis=0))
     return np.maximum(step, now.apart), falling
 
 

@@ -70,27 +70,33 @@ class Side:
     left: np.ndarray
     """(q,) [s] until the end."""
 
-    def vertex_pull(self, direction):
+    def vertex_pull(self, across):
         """
-        Return how strongly, (q,) [m/s^2], turning pulls any vertex along `direction` (3, q).
+        Return how strongly, (q,) [m/s^2], turning pulls any vertex along n; `across` is n x w.
 
         n . (w x (w x r)) is (n x w) . (w x r): the part of w along n pulls nothing.
         """
-        across = length(cross(self.spin, direction)) + self.spin_change * self.left
-        across = np.minimum(across, self.spin_bound)
-        return (across * self.spin_bound + self.spin_change) * self.solids.bounding_radius
+        bound = length(across) + self.spin_change * self.left
+        bound = np.minimum(bound, self.spin_bound)
+        return (bound * self.spin_bound + self.spin_change) * self.solids.bounding_radius
 
     def vertex_acceleration(self):
         """Return a bound, (q,) [m/s^2], of how turning accelerates any vertex."""
         return ((self.spin_bound * self.spin_bound + self.spin_change)
                 * self.solids.bounding_radius)
 
-    def vertices(self, rotation, direction):
-        """Return heights and speeds, (8, q), of the vertices from the centre, along (3, q)."""
-        half = self.solids.half_extents
-        offset = transform_transposed(rotation, direction) * half
-        lever = transform_transposed(rotation, cross(direction, self.spin)) * half
-        return VERTEX_SIGNS.T @ offset, VERTEX_SIGNS.T @ lever
+    def vertices(self, rotation, *directions):
+        """
+        Return how far [m], (8, q) each, the vertices are from the centre along `directions`.
+
+        Along n x w this is how fast they move along n.
+        """
+        half = self.solids.half_extents[:, np.newaxis]
+        offset = transform_transposed(rotation[:, :, np.newaxis], np.stack(directions, axis=1))
+        offset *= half
+        count = half.shape[-1]
+        return (VERTEX_SIGNS.T @ offset.reshape(3, -1)).reshape(
+            8, len(directions), count).transpose(1, 0, 2)
 
 
 def length(vectors):
@@ -101,8 +107,9 @@ def length(vectors):
 def box_plane(a, b):
     """Return the lines of the 8 vertices of a box above a plane, which does not turn."""
     normal = b.solids.plane_normal
-    height, speed = a.vertices(matrix(a.solids.orientation), normal)
-    return _above_plane(a, b, height, speed, a.vertex_pull(normal))
+    across = cross(normal, a.spin)
+    height, speed = a.vertices(matrix(a.solids.orientation), normal, across)
+    return _above_plane(a, b, height, speed, a.vertex_pull(across))
 
 
 def sphere_plane(a, b):
@@ -133,7 +140,7 @@ def sphere_sphere(a, b):
     rate = around / np.where(distance > 0, distance, np.inf)
     zero = np.zeros((1, len(distance)))
     return _turning(a, b, normal, rate, a.solids.radius + b.solids.radius,
-                    (zero, zero), (zero, zero), 0.0, 0.0)
+                    (zero, zero, zero, zero), 0.0, 0.0)
 
 
 def sphere_box(a, b):
@@ -148,8 +155,10 @@ def sphere_box(a, b):
     around = around / np.where(distance > 0, distance, np.inf)
     normal = -transform(rotation, outward)
     rate = cross(b.spin, normal) - transform(rotation, around)
-    return _turning(a, b, normal, rate, a.solids.radius, b.vertices(rotation, normal),
-                    b.vertices(rotation, rate), b.vertex_pull(normal), b.vertex_acceleration())
+    across = cross(normal, b.spin)
+    return _turning(a, b, normal, rate, a.solids.radius,
+                    b.vertices(rotation, normal, across, rate, cross(rate, b.spin)),
+                    b.vertex_pull(across), b.vertex_acceleration())
 
 
 def box_box(a, b):
@@ -157,38 +166,49 @@ def box_box(a, b):
     axes = separating_axes(a.solids, b.solids)
     best = axes.best()
     normal, rate = best.normal, best.rate(a.spin, b.spin)
-    along, along_rate = (
-        [(of_b - of_a[:, np.newaxis]).reshape(64, -1) for of_a, of_b in zip(
-            a.vertices(axes.rotation_a, direction), b.vertices(axes.rotation_b, direction))]
-        for direction in (normal, rate))
-    return _turning(a, b, normal, rate, 0.0, along, along_rate,
-                    a.vertex_pull(normal) + b.vertex_pull(normal),
+    across = [cross(normal, side.spin) for side in (a, b)]
+    of_a, of_b = (
+        side.vertices(rotation, normal, turn, rate, cross(rate, side.spin))
+        for side, rotation, turn in zip((a, b), (axes.rotation_a, axes.rotation_b), across))
+    along = (of_b[:, np.newaxis] - of_a[:, :, np.newaxis]).reshape(4, 64, -1)
+    return _turning(a, b, normal, rate, 0.0, along,
+                    a.vertex_pull(across[0]) + b.vertex_pull(across[1]),
                     a.vertex_acceleration() + b.vertex_acceleration())
 
 
-def _turning(a, b, normal, rate, radius, along, along_rate, pull, acceleration):
+def _turning(a, b, normal, rate, radius, along, pull, acceleration):
     """
     Return the lines of points of a and b along normals (3, q) that turn at `rate` (3, q).
 
-    `along` and `along_rate` hold what the points (m, q) of b are beyond those of a, seen from
-    the centres, and how fast, along the normal and along its rate; `pull` and `acceleration` are
+    `along` holds what the points (m, q) of b are beyond those of a, seen from the centres, along
+    the normal, along n x w, along the rate n' and along n' x w; `pull` and `acceleration` are
     bounds, (q,), of what turning does to them.
     """
     between = b.solids.center - a.solids.center
     velocity = b.velocity - a.velocity
     push = b.acceleration - a.acceleration
     turn = length(rate)
-    limit = LIMIT / np.maximum(turn, LIMIT / NEVER)
     held_speed = dot(normal, velocity) + along[1]
     held_pull = pull - dot(normal, push)
-    speed = held_speed + dot(rate, between) + along_rate[0]
-    swing = 2 * (dot(rate, velocity) + along_rate[1])
+    strongest = (held_pull - 2 * dot(rate, velocity) + LIMIT * (acceleration + length(push))
+                 + radius * turn * turn)
     reach = a.solids.bounding_radius + b.solids.bounding_radius
     return Lines(
-        dot(normal, between) - radius + along[0], speed,
-        held_pull - swing + LIMIT * (acceleration + length(push)) + radius * turn * turn, limit,
-        held_speed, held_pull, sphere_meeting_times(reach, between, velocity, push),
+        dot(normal, between) - radius + along[0],
+        held_speed + dot(rate, between) + along[2], strongest - 2 * along[3],
+        LIMIT / np.maximum(turn, LIMIT / NEVER), held_speed, held_pull,
+        _apart(reach, between, velocity, push),
         np.abs(a.solids.center).max(axis=0) + np.abs(b.solids.center).max(axis=0) + reach)
+
+
+def _apart(reach, between, velocity, push):
+    """Return how long [s], (q,), the bounding spheres stay apart."""
+    result = np.zeros(len(reach))
+    rows = np.flatnonzero(dot(between, between) > reach * reach)
+    if len(rows):
+        result[rows] = sphere_meeting_times(
+            reach[rows], *(values[:, rows] for values in (between, velocity, push)))
+    return result
 
 
 LINES = {('box', 'box'): box_box, ('box', PLANE): box_plane, ('sphere', 'box'): sphere_box,
