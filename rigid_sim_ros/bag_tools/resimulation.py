@@ -89,7 +89,7 @@ class Resimulation:
 
     @property
     def damage(self):
-        """What of the recording could not be read."""
+        """Return what of the recording could not be read."""
         return self._bag.damage
 
     def pairs(self):

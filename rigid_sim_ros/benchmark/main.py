@@ -78,7 +78,8 @@ def list_all(options):
         print(f'  {problem.name:{width}}  {problem.title}')
     print('engines')
     for name, row in ENGINES.items():
-        state = row.version() if name in installed else f'not installed: pip install {row.distribution}'
+        state = (row.version() if name in installed
+                 else f'not installed: pip install {row.distribution}')
         print(f'  {name:{width}}  {row.title} ({state})')
 
 

@@ -42,7 +42,7 @@ class LastingPairs:
             self._last_seen[pair] = contacts.point[:, row], contacts.normal[:, row]
 
     def forget(self, time, indices):
-        """These bodies (k,) were taken out of contact, by a command say, at `time` [s]."""
+        """Take bodies (k,) out of contact, after a command say, at `time` [s]."""
         gone = set(np.asarray(indices).tolist())
         for pair in sorted(pair for pair in self._last_seen if not gone.isdisjoint(pair)):
             self._note(time, pair, END, *self._last_seen.pop(pair))

@@ -153,7 +153,7 @@ class Simulation:
         return diagnostics.energy(self._world.bodies, self._world.gravity, self._method.state)
 
     def momentum(self):
-        """Return the momentum (3,) of all moving bodies [kg m/s]."""
+        """Return the momentum of all moving bodies [kg m/s], (3,)."""
         return diagnostics.momentum(self._world.bodies, self._method.state)
 
     def angular_momentum(self):

@@ -122,11 +122,11 @@ class Commands:
 
     @property
     def next_time(self):
-        """Simulated time [ns] of the next that is pending, infinite if none is."""
+        """Return the simulated time [ns] of the next that is pending, infinite if none is."""
         return self._pending[0][0] if self._pending else float('inf')
 
     def carry_out(self, command, now):
-        """Carry out a command at `now` [ns], which is the simulation's time; or raise `Refused`."""
+        """Carry out a command at `now` [ns], the simulation's time; or raise `Refused`."""
         self._check(command)
         self._apply(command, now)
 

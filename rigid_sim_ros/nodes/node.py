@@ -22,14 +22,13 @@ from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.nodes.announcement import welcome
 from rigid_sim_ros.nodes.clock_source import ClockSource
 from rigid_sim_ros.nodes.command_topics import CommandTopics
-from rigid_sim_ros.nodes.commands import Refused
 from rigid_sim_ros.nodes.control import Control
+from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import Parameters, STAMP, unknown_parameter_text
 from rigid_sim_ros.nodes.publishing import Publications
 from rigid_sim_ros.nodes.recording import Recording
-from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.services import Services
 from rigid_sim_ros.nodes.session import Session
 from rigid_sim_ros.recording import RecordingError
@@ -123,7 +122,7 @@ class SimulationNode:
 
     @property
     def time_text(self):
-        """Simulated time, for people."""
+        """Return the simulated time, for people."""
         return f'{self.session.time / NANOSECONDS:.9f} s'
 
     def set_paused(self, paused):

@@ -34,7 +34,7 @@ from rigid_sim_ros.recording import DROP, WAIT
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
 
 ARRIVAL, STAMP = 'arrival', 'stamp'
-"""When a command takes effect: as soon as it is received, or at the simulated time of its stamp."""
+"""When a command takes effect: as soon as it arrives, or at the simulated time of its stamp."""
 
 
 class ParameterError(ValueError):
@@ -56,7 +56,7 @@ class Row:
 
     @property
     def allowed(self):
-        """What values are allowed, as a phrase."""
+        """Return what values are allowed, as a phrase."""
         if self.choices:
             return ', '.join(self.choices)
         if self.smallest is not None:

@@ -45,7 +45,7 @@ class Publication:
 
     @property
     def topic(self):
-        """The full name of the topic, after remapping."""
+        """Return the full name of the topic, after remapping."""
         return self._publisher.topic_name
 
     @property
@@ -108,7 +108,8 @@ class Publications:
         """Publish a row's topic from now on."""
         if row.name not in self._publications:
             # only the streams: losing an event or the scene is never what anybody wants
-            reliability = self._reliability if row.when == EVERY_STEP and not row.parameter else None
+            is_stream = row.when == EVERY_STEP and not row.parameter
+            reliability = self._reliability if is_stream else None
             self._publications[row.name] = Publication(
                 self._node, row, self._source, self._recording, reliability)
 
@@ -157,7 +158,9 @@ class Publications:
 
     def has_new_subscriber(self):
         """Tell whether somebody subscribed to a stream since this was last asked."""
-        return any([publication.has_new_subscriber() for publication in self.of(EVERY_STEP)])
+        # all are asked: each remembers that it was
+        answers = [publication.has_new_subscriber() for publication in self.of(EVERY_STEP)]
+        return any(answers)
 
     def of(self, when):
         """Return the publications sent at one of the occasions in `topics`, as a list."""

@@ -32,7 +32,8 @@ class Services:
         """Stop simulated time, or let it go on."""
         self._simulation_node.set_paused(request.data)
         response.success = True
-        response.message = f'{"paused" if request.data else "running"} at {self._simulation_node.time_text}'
+        state = 'paused' if request.data else 'running'
+        response.message = f'{state} at {self._simulation_node.time_text}'
         return response
 
     def step(self, request, response):

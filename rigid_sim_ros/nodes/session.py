@@ -55,12 +55,12 @@ class Session:
 
     @property
     def time(self):
-        """Simulated time of the node [ns]: the stamp of the state the simulation is in."""
+        """Return the node's simulated time [ns]: the stamp of the state the simulation is in."""
         return self._time
 
     @property
     def next_time(self):
-        """The next time [ns] to be published."""
+        """Return the next time [ns] to be published."""
         return self._grid.after(self._time)
 
     def set_publish_rate(self, rate):

@@ -79,7 +79,9 @@ def frame(center, radius, azimuth, elevation, width, height):
     Parameters
     ----------
     center : (k, 3) [m]
+        Of the balls.
     radius : (k,) [m]
+        Of the balls.
     azimuth, elevation : float
         Where the camera stands, seen from the balls [degrees]: azimuth 0 is on +x, 90 on +y;
         elevation 90 is above.

@@ -33,7 +33,9 @@ def hit_box(origin, rays, half):
     origin : (3, ...) [m]
         Where the rays start, in body axes.
     rays : (3, ...)
+        Their directions, of any length, in body axes.
     half : (3,) [m]
+        Half the edges of the box.
 
     """
     enter, leave = -np.inf, np.inf

@@ -82,8 +82,9 @@ class NodeProcess:
         if not parameters:
             ros_arguments = list(arguments)
         self.domain_id = next(_domain_ids)
-        environment = {**os.environ, 'ROS_DOMAIN_ID': str(self.domain_id), 'PYTHONPATH': os.pathsep.join(
-            [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])}
+        modules = [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]
+        environment = {**os.environ, 'ROS_DOMAIN_ID': str(self.domain_id),
+                       'PYTHONPATH': os.pathsep.join(modules)}
         with open(self.folder / 'out', 'w') as out, open(self.folder / 'error', 'w') as error:
             self.process = subprocess.Popen(
                 [sys.executable, '-m', 'rigid_sim_ros.nodes.simulation_node', *ros_arguments],
@@ -105,12 +106,12 @@ class NodeProcess:
 
     @property
     def output(self):
-        """What it printed to stdout so far."""
+        """Return what it printed to stdout so far."""
         return (self.folder / 'out').read_text(errors='replace')
 
     @property
     def error(self):
-        """What it printed to stderr so far; the log goes there too."""
+        """Return what it printed to stderr so far; the log goes there too."""
         return (self.folder / 'error').read_text(errors='replace')
 
     def wait_for_text(self, text):

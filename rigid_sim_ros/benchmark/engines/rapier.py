@@ -29,7 +29,8 @@ class Rapier(Engine):
 
     More iterations gain no more than a shorter step of the same cost, and the friction model with
     a constraint a point lets a cube creep down an incline. The largest restitution and the
-    geometric mean of the frictions are chosen as in scene files. A plane is a half space through its point nearest the origin.
+    geometric mean of the frictions are chosen as in scene files. A plane is a half space
+    through its point nearest the origin.
     Forces and torques are held by Rapier until reset. Poses are read as bytes, the fastest way
     there is (a quarter of the time of the attributes).
     """

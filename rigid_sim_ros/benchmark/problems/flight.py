@@ -25,7 +25,7 @@ from rigid_sim_ros.benchmark.trajectories import angles_between
 NO_GRAVITY = (0.0, 0.0, 0.0)
 
 CUBE_MOMENT = 0.0078125
-"""[kg m^2]: near that of a cube of 0.2 m and 1 kg, and a power of two, so that no digit is lost."""
+"""[kg m^2]: near that of a cube of 0.2 m and 1 kg, and a power of two, so no digit is lost."""
 
 FORCE, TORQUE = (0.1, 0.2, 0.3), (0.001, 0.002, 0.003)
 VELOCITY, SPIN = (1.0, 0.0, -0.5), (1.0, 2.0, 0.0)

@@ -44,7 +44,7 @@ class Problem:
     """When poses are read [s], each a whole frame; the last is the end."""
 
     measure: Callable
-    """From a `Trajectory` to a mapping of measures; names end in the unit, the first is plotted."""
+    """From a `Trajectory` to a mapping of measures; names end in the unit; the first is drawn."""
 
     rates: tuple = RATES
     """Steps a second."""
@@ -63,7 +63,7 @@ class Problem:
 
     @property
     def duration(self):
-        """Simulated time [s]."""
+        """Return how much time is simulated [s]."""
         return self.times[-1]
 
 

@@ -33,6 +33,7 @@ def after_impulse(bodies, point, normal, restitution):
     point, normal : (3,)
         Where they touch [m], and the unit vector from a to b.
     restitution : float
+        Rebound speed over approach speed.
 
     """
     normal = np.asarray(normal, dtype=float)
@@ -40,8 +41,9 @@ def after_impulse(bodies, point, normal, restitution):
     speeds = [np.add(body['velocity'], np.cross(body['spin'], arm))
               for body, arm in zip(bodies, arms)]
     approach = normal @ (speeds[1] - speeds[0])
-    mobility = sum(1 / body['mass'] + normal @ np.cross(np.cross(arm, normal) / body['moment'], arm)
-                   for body, arm in zip(bodies, arms))
+    mobility = sum(
+        1 / body['mass'] + normal @ np.cross(np.cross(arm, normal) / body['moment'], arm)
+        for body, arm in zip(bodies, arms))
     size = -(1 + restitution) * approach / mobility
     return [(body['velocity'] + sign * size / body['mass'] * normal,
              body['spin'] + sign * size / body['moment'] * np.cross(arm, normal))

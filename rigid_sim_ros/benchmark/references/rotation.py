@@ -20,8 +20,8 @@ Taylor series of the quaternion q, the angular momentum m and the torque g, both
     q' = q w / 2,    m' = m x w + g,    g' = g x w,    w = m / I,
 
 for a torque that is constant in world axes. Numbers are integers, scaled by 2^128: Python's
-integers are exact and several times faster than a multiple-precision library, and nothing overflows
-as every coefficient is taken times the stride's power. Works for any inertia and any torque, near
+integers are exact and several times faster than a multiple-precision library, and nothing
+overflows as every coefficient is taken times the stride's power. Works for any inertia and any torque, near
 unstable axes too, where double precision loses eight digits.
 """
 

@@ -63,7 +63,7 @@ def add_options(parser):
     parser.add_argument('--restitutions', type=float, nargs='+', default=RESTITUTIONS,
                         metavar='E', help='values to choose from; one of each: no fit')
     parser.add_argument('--impact-law', choices=tuple(IMPACT_LAWS), default='poisson',
-                        help='of this package\'s own methods (%(default)s)')
+                        help='of the methods of this package (%(default)s)')
     parser.add_argument('--count', type=int, metavar='N', help='only the first N tosses')
     parser.add_argument('--length-scale', type=float, default=LENGTH_SCALE, metavar='S',
                         help='measured over true lengths (%(default)s, as in the public data)')

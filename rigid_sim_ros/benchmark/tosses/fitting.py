@@ -30,7 +30,7 @@ class Fit:
 
     parameters: dict
     fitted: tuple
-    """Position [%], rotation [degrees] and right faces [%], means over the tosses it was fitted to."""
+    """Position [%], rotation [degrees] and right faces [%]: means over the tosses fitted to."""
 
     unseen: tuple
     """The same over tosses that the fit did not see, a mean over random halves."""

@@ -116,7 +116,7 @@ class Flights:
         return position, orientation
 
     def velocities(self, time, indices=None):
-        """Return linear (3, k) [m/s] and angular (3, k) [rad/s] velocities, in world axes, as `poses`."""
+        """Return linear [m/s] and angular [rad/s] velocities, (3, k) each, world axes, as `poses`."""
         elapsed = self._elapsed(time, indices)
         rate = self._fixed_axis.rates(elapsed, indices)
         for rotations in self._present():

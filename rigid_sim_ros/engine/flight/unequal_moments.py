@@ -51,7 +51,7 @@ START, FRAME, MOMENTS, MAGNITUDE, RATE, TORQUE = (
 torque at the start, body axes."""
 
 KEPT = 5
-"""Count of the rows that the table keeps before the series: frame and one over the unit of time."""
+"""Count of rows the table keeps before the series: frame and one over the unit of time."""
 
 ROW_COUNT = KEPT + 8 * (ORDER + 1)
 """Rows of the table of a stride."""
@@ -199,8 +199,8 @@ def rate_bound(constants, start, end):
 
     Three hold, the least is returned. With f = 1 / moment: |w| <= f_max |L|, where L moves along a
     line. |w| <= sqrt(f_max) e, where e = sqrt(2 T) grows at most by |torque| sqrt(f_max) a second,
-    from de/dt = torque . w / e. And as the sum of L_i^2 f_i^2 for given sums L^2 of L_i^2 and e^2 of
-    L_i^2 f_i is largest with L_i^2 at both ends: |w|^2 <= (f_max + f_min) e^2 - f_max f_min L^2.
+    from de/dt = torque . w / e. And as the sum of L_i^2 f_i^2 for given sums L^2 of L_i^2 and e^2
+    of     L_i^2 f_i is largest with L_i^2 at both ends: |w|^2 <= (f_max + f_min) e^2 - f_max f_min L^2.
     """
     moments, rate, torque = (np.array(constants[rows]) for rows in (MOMENTS, RATE, TORQUE))
     # without an end there is no bound; any finite time will do meanwhile

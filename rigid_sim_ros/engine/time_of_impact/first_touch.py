@@ -59,11 +59,17 @@ def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
     Parameters
     ----------
     bodies : Bodies
+        Which bodies there are.
     flights : Flights
+        How they move.
     pairs_a, pairs_b : (p,) int
+        Which may touch.
     start : float or (p,) [s]
+        When the search begins.
     end : float [s]
+        When it ends.
     guarded : (p,) bool
+        Which of the pairs touch at the start and were just resolved.
 
     """
     start = np.broadcast_to(np.asarray(start, dtype=float), np.shape(pairs_a))

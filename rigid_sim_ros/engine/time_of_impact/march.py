@@ -93,10 +93,15 @@ def march(lines, size, start, end, guarded, few):
     lines : callable
         lines(pairs, times) returns the `Lines` of some of the pairs, (q,) int, at times (q,).
     size : (p,) [m]
+        Of each pair, the smaller bounding radius.
     start : (p,) [s]
+        When the search begins.
     end : float [s]
+        When it ends.
     guarded : (p,) bool
+        Which of the pairs touch at the start and were just resolved.
     few : int
+        How many pairs may be left over.
 
     """
     result = np.full(len(size), np.inf)
