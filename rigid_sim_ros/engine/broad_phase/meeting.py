@@ -41,12 +41,15 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
     Parameters
     ----------
     bodies : Bodies
+        Which bodies there are.
     pairs_a, pairs_b : (p,) int
         Not two planes.
     position : (3, n) [m]
+        Of all bodies and planes.
     velocity : (3, n) [m/s]
-    acceleration : (3, n) [m/s^2], constant
-        Of all bodies and planes; zero velocity and acceleration of what is fixed.
+        Of the same, zero of what is fixed.
+    acceleration : (3, n) [m/s^2]
+        Of the same, constant, zero of what is fixed.
 
     """
     if len(pairs_a) <= FEW:

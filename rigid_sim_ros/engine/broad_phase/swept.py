@@ -45,12 +45,15 @@ def swept_pairs(bodies, flying, solid, position, velocity, acceleration):
     Parameters
     ----------
     bodies : Bodies
+        Which bodies there are.
     flying, solid : (n,) bool
         Which move; and which can be met, among them the flying.
     position : (3, n) [m]
+        Of all bodies and planes.
     velocity : (3, n) [m/s]
-    acceleration : (3, n) [m/s^2], constant
-        Of all bodies and planes; zero velocity and acceleration of what does not fly.
+        Of the same, zero of what does not fly.
+    acceleration : (3, n) [m/s^2]
+        Of the same, constant, zero of what does not fly.
 
     Returns
     -------

@@ -84,9 +84,11 @@ class PairGroups:
         Parameters
         ----------
         position : (3, n) [m]
-        orientation : (4, n) x y z w, body to world
             Of all bodies and planes.
+        orientation : (4, n)
+            Of the same, x y z w, body to world.
         margin : float or (p,) [m]
+            Of all pairs, or of each.
 
         """
         margin = np.broadcast_to(np.asarray(margin, dtype=float), self.pairs_a.shape)
