@@ -100,6 +100,13 @@ class Encounters:
             self._search(end)
         return None
 
+    def involved(self, end):
+        """Return the bodies (k,) of all pairs that may touch by `end` [s], each once."""
+        if self._next > end:
+            return self.body_a[:0]
+        soon = self.due <= end
+        return np.union1d(self.body_a[soon], self.body_b[soon])
+
     # -- inside --------------------------------------------------------------------------------
 
     def _search(self, end):

@@ -31,17 +31,20 @@ from rigid_sim_ros.engine.lasting_contact import advance_island, Island
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
 
-REACH_FACTOR = 4.0
+REACH_FACTOR = 2.0
 """
-How much faster than the fastest body now one can be after an impact within a step: a body in
-flight that could reach a body in lasting contact at this speed is stepped with it.
+How much faster than now a body may be after an impact within a step: what could meet at this speed
+is looked at together.
 """
-
-SKIN_STEPS = 4
-"""Pairs are looked for so far around that they stay complete for about so many steps."""
 
 SKIN = 0.05
-"""And at least this part of the smallest body around: what rests need not look again."""
+"""
+Pairs of slow bodies are looked for this part of the smallest body further around, and kept until
+somebody has moved so far: what rests need not look again.
+"""
+
+SKIN_STEPS = 8
+"""Bodies are slow if the skin lasts for at least so many steps."""
 
 CLOSED = 1e-6
 """A sleeping body nearer than this part of the smaller one is touched."""
@@ -97,31 +100,30 @@ class Islands:
         self.add(woken)
         return woken
 
-    def reached(self, start, end, state):
+    def reached(self, start, end, state, deflected):
         """
         Return who may be touched by `end` [s] and is not in lasting contact yet.
 
         Bodies in flight (k,) that may meet a touching one, and sleeping bodies (m,) that one
-        leans on or comes upon. `state` is that of all bodies at `start`.
+        leans on or comes upon. `state` is that of all bodies at `start`. Of bodies `deflected`
+        (d,), which may hit something else before, nobody knows in what direction they go on.
         """
-        moving = self._world.bodies.moving_count
-        touching = self.touching
-        if touching.all():
-            return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-        speed = self._speeds(state, start, end)
-        margin = REACH_FACTOR * (end - start) * speed.max()
-        a, b = candidate_pairs(self._world.bodies, state.position, margin)
-        both = b < moving
+        nobody = np.zeros(0, dtype=int)
+        if self.touching.all():
+            return nobody, nobody
+        bodies = self._world.bodies
+        reach = self._reach(state, start, end)
+        reach[deflected] = REACH_FACTOR * reach.max()
+        a, b = candidate_pairs(bodies, state.position, 2 * reach.max())
+        both = b < bodies.moving_count
         a, b = a[both], b[both]
-        mixed = touching[a] != touching[b]
-        here = np.where(touching[a], a, b)[mixed]
-        there = np.where(touching[a], b, a)[mixed]
+        mixed = self.touching[a] != self.touching[b]
+        a, b = a[mixed], b[mixed]
+        gap = separations(bodies, a, b, state.position, state.orientation)
+        near = gap < reach[a] + reach[b] + CLOSED * bodies.bounding_radius[a]
+        there = np.where(self.touching[a], b, a)[near]
         sleeps = self.asleep[there]
-        here, sleepers = here[sleeps], there[sleeps]
-        gap = separations(self._world.bodies, here, sleepers, state.position, state.orientation)
-        near = gap < 1.5 * speed[here] * (end - start) + (
-            CLOSED * self._world.bodies.bounding_radius[here])
-        return np.unique(there[~sleeps]), np.unique(sleepers[near])
+        return np.unique(there[~sleeps]), np.unique(there[sleeps])
 
     def advance(self, members, start, end, state):
         """
@@ -147,41 +149,47 @@ class Islands:
 
     def _current(self, members, start, end, state):
         """Return the islands of these bodies (k,), made again if they may not be complete."""
-        motion = 2 * (end - start) * self._speeds(state, start, end)[members].max()
+        reach = self._reach(state, start, end)
+        motion = 2 * reach[members].max()
         self._skin -= motion
         if self._skin < 0 or not np.array_equal(members, self._members):
-            radius = self._world.bodies.bounding_radius[members].min()
-            skin = max(SKIN_STEPS * motion, SKIN * radius)
+            skin = SKIN * self._world.bodies.bounding_radius[members].min()
+            skin = skin if skin > SKIN_STEPS * motion else 0.0
             self._members, self._skin = members, skin - motion
-            self._islands = self._found(members, state.position, skin)
+            self._islands = self._found(members, state, reach, skin)
         return self._islands
 
-    def _found(self, members, position, skin):
-        """Return the islands that bodies (k,) nearer to each other than `skin` [m] make."""
+    def _found(self, members, state, reach, skin):
+        """Return the islands of bodies (k,) that come nearer to each other than `skin` [m]."""
         bodies = self._world.bodies
         is_member = np.zeros(bodies.count, dtype=bool)
         is_member[members] = True
         solid = is_member.copy()
         solid[:bodies.moving_count] |= self.asleep
         solid[bodies.moving_count:] = True
-        a, b = candidate_pairs(bodies, position, skin)
+        a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + skin)
         ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
         a, b = a[ours], b[ours]
+        gap = separations(bodies, a, b, state.position, state.orientation)
+        near = gap <= reach[a] + reach[b] + skin
+        a, b = a[near], b[near]
         both = is_member[a] & is_member[b]
         labels = component_labels(bodies.count, a[both], b[both])
         of_pair, of_member = labels[np.where(is_member[a], a, b)], labels[members]
         return [Island(self._world, members[of_member == label], a[of_pair == label],
                        b[of_pair == label]) for label in np.unique(of_member)]
 
-    def _speeds(self, state, start, end):
-        """Return bounds of how fast points of moving bodies are until `end`, (n,) [m/s]."""
+    def _reach(self, state, start, end):
+        """Return how far points of bodies may come until `end`, (n,) [m]; zero if they rest."""
+        pull = self._flights.acceleration
+        reach = np.zeros(self._world.bodies.count)
         moving = slice(0, self._world.bodies.moving_count)
-        linear, angular = state.linear_velocity[:, moving], state.angular_velocity[:, moving]
-        pull = self._flights.acceleration[:, moving]
-        return (np.sqrt(rotation.dot(linear, linear))
-                + np.sqrt(rotation.dot(angular, angular))
-                * self._world.bodies.bounding_radius[moving]
-                + np.sqrt(rotation.dot(pull, pull)) * (end - start))
+        linear, angular, pull = (
+            np.sqrt(rotation.dot(values, values))[moving]
+            for values in (state.linear_velocity, state.angular_velocity, pull))
+        speed = linear + angular * self._world.bodies.bounding_radius[moving]
+        reach[moving] = REACH_FACTOR * (end - start) * (speed + pull * (end - start))
+        return reach
 
 
 def _alone(island, touching):

@@ -77,12 +77,14 @@ class Exact:
         self._gather(end)
         members = np.flatnonzero(self._islands.touching)
         end = self._fly(end)
-        self._step(members, end)
-        self.time = end
+        if end > self.time:
+            self._step(members, end)
+            self.time = end
 
     def _gather(self, end):
         """Put those that may meet a body in lasting contact before `end` [s] in with it."""
-        flying, sleeping = self._islands.reached(self.time, end, self.state)
+        flying, sleeping = self._islands.reached(self.time, end, self.state,
+                                                 self._encounters.involved(end))
         joining = np.concatenate((flying, self._islands.wake(sleeping)))
         if len(joining):
             self._encounters.hide(joining)
