@@ -39,7 +39,7 @@ class ClockSource:
         if others:
             self._say_left_to(others[0])
         elif parameters.publish_clock:
-            publications.open(ROW)
+            publications.begin(ROW)
 
     def look(self):
         """Stop publishing if somebody else does too; call now and then."""
@@ -48,15 +48,15 @@ class ClockSource:
         publishers = self._publishers()
         first = min(publishers, key=lambda info: bytes(info.endpoint_gid), default=None)
         if len(publishers) > 1 and not self._is_own(first):
-            self._publications.close(ROW)
+            self._publications.end(ROW)
             self._say_left_to(first)
 
     def _obey(self):
         self._told = True
         if self._parameters.publish_clock:
-            self._publications.open(ROW)
+            self._publications.begin(ROW)
         else:
-            self._publications.close(ROW)
+            self._publications.end(ROW)
 
     def _publishers(self):
         return self._node.get_publishers_info_by_topic(ROW.name)

@@ -99,12 +99,12 @@ class Publications:
         self._publications = {}
         for row in PUBLISHED:
             if row.parameter is None:
-                self.open(row)
+                self.begin(row)
 
     def __iter__(self):
         return iter(self._publications.values())
 
-    def open(self, row):
+    def begin(self, row):
         """Publish a row's topic from now on."""
         if row.name not in self._publications:
             # only the streams: losing an event or the scene is never what anybody wants
@@ -117,7 +117,7 @@ class Publications:
         """Tell whether a row's topic is published."""
         return row.name in self._publications
 
-    def close(self, row):
+    def end(self, row):
         """Publish a row's topic no longer."""
         publication = self._publications.pop(row.name, None)
         if publication is not None:
