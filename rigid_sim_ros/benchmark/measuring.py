@@ -75,8 +75,9 @@ def measure(problem, scene, engine, rate, worker, effort):
     The scene is the problem's, loaded; the worker is that of the engine.
     """
     row = ENGINES[engine]
-    result = dict(problem=problem.name, engine=engine, version=row.version(), rate_hz=rate,
-                  bodies=problem.bodies, simulated_s=problem.duration)
+    result = {
+        'problem': problem.name, 'engine': engine, 'version': row.version(), 'rate_hz': rate,
+        'bodies': problem.bodies, 'simulated_s': problem.duration}
     step = 1 / rate
     try:
         trajectory = worker.ask((scene, step, problem.may_sleep, problem.times),

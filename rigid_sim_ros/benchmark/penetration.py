@@ -16,8 +16,8 @@
 How deep bodies overlap, from their poses alone: the same measure for every engine.
 
 Written for the benchmark with nothing in common with the engine. Boxes by the separating axis
-theorem with all 15 axes: the depth of a pair is the smallest overlap along any of them (Gottschalk,
-Lin and Manocha 1996). Boxes and spheres against planes by their lowest point.
+theorem with all 15 axes: the depth of a pair is the smallest overlap along any of them
+(Gottschalk, Lin and Manocha 1996). Boxes and spheres against planes by their lowest point.
 """
 
 import numpy as np

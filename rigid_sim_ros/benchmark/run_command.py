@@ -20,8 +20,6 @@ from importlib.util import find_spec
 from pathlib import Path
 import sys
 
-from tqdm import tqdm
-
 from rigid_sim_ros.benchmark.engines import ENGINES, installed_engines
 from rigid_sim_ros.benchmark.errors import BenchmarkError, chosen
 from rigid_sim_ros.benchmark.machine import machine_facts
@@ -31,6 +29,7 @@ from rigid_sim_ros.benchmark.processes import Worker
 from rigid_sim_ros.benchmark.report import markdown_tables, terminal_table
 from rigid_sim_ros.benchmark.results import write_csv
 from rigid_sim_ros.scene import load_scene
+from tqdm import tqdm
 
 
 def add_options(parser):
@@ -45,7 +44,7 @@ def add_options(parser):
     parser.add_argument('--engines', nargs='+', metavar='ENGINE', default=[],
                         help='names of engines; default all that are installed')
     parser.add_argument('--rates', nargs='+', type=int, metavar='HZ', default=[],
-                        help=f'steps a second, multiples of {FRAME_RATE}; default: as the problem says')
+                        help=f'steps a second, multiples of {FRAME_RATE}; default as in the problem')
     parser.add_argument('--repeats', type=int, default=Effort.repeats,
                         help='least number of timed runs (%(default)s); the median counts')
     parser.add_argument('--timeout', type=float, default=Effort.timeout, metavar='SECONDS',

@@ -110,7 +110,7 @@ class Encounters:
     # -- inside --------------------------------------------------------------------------------
 
     def _search(self, end):
-        """Find the first touches of the pairs that may touch until `end`, or when to look again."""
+        """Find the first touches of pairs that may touch until `end`, or when to look again."""
         rows = np.flatnonzero(~self.found & (self.due <= end))
         start = self.due[rows]
         until = max(end, float(start.max()) + SEARCH_WINDOW)

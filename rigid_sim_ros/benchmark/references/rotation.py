@@ -21,8 +21,8 @@ Taylor series of the quaternion q, the angular momentum m and the torque g, both
 
 for a torque that is constant in world axes. Numbers are integers, scaled by 2^128: Python's
 integers are exact and several times faster than a multiple-precision library, and nothing
-overflows as every coefficient is taken times the stride's power. Works for any inertia and any torque, near
-unstable axes too, where double precision loses eight digits.
+overflows as every coefficient is taken times the stride's power. Works for any inertia and any
+torque, near unstable axes too, where double precision loses eight digits.
 """
 
 from fractions import Fraction

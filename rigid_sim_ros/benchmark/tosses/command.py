@@ -19,8 +19,6 @@ from pathlib import Path
 import sys
 
 import numpy as np
-from tqdm import tqdm
-
 from rigid_sim_ros.benchmark.engines import ENGINES
 from rigid_sim_ros.benchmark.errors import BenchmarkError
 from rigid_sim_ros.benchmark.processes import RunFailed, Worker
@@ -33,6 +31,7 @@ from rigid_sim_ros.benchmark.tosses.scores import score
 from rigid_sim_ros.benchmark.trajectories import fault
 from rigid_sim_ros.engine.impacts import IMPACT_LAWS
 from rigid_sim_ros.scene import load_scene
+from tqdm import tqdm
 
 FRICTIONS = (0.14, 0.16, 0.17, 0.18, 0.19, 0.2, 0.22)
 RESTITUTIONS = (0.0, 0.1, 0.15, 0.2, 0.3, 0.4)
