@@ -16,7 +16,9 @@
 Flight: where bodies are between contacts, as formulas of time.
 
 `Flights` is all that the rest of the engine uses. Inside, one module a kind of motion:
-`translations`, `fixed_axis`, `free_rotation` (with `theta`) and `driven_rotation` (with `strides`).
+`translations`; `fixed_axis`; `free_rotation` by theta functions, from the `polhode` in the form
+`trigonometric` or `hyperbolic`; `driven_rotation` by power series, of which `equal_moments` and
+`unequal_moments` are the two laws.
 """
 
 from rigid_sim_ros.engine.flight.flights import Flights

@@ -65,9 +65,9 @@ def stride(functions, constants, time, state):
 
     With the rate (across, along + growth t) in the frame, `across` complex, q' = w q / 2 reads
     a' = (i w3 a - across c) / 2 and c' = (conj(across) a - i w3 c) / 2. The series are in the
-    fraction of the stride, which is the unit, and end by the size of their terms: an order chosen from the reach
-    alone falls short where the growth dominates, as terms then fall like
-    (reach / 2)^(k/2) / (k/2)!.
+    fraction of the stride, which is the unit, and end by the size of their terms: an order chosen
+    from the reach alone falls short where the growth dominates, as the terms then fall like
+    (reach / 2)^(k/2) / (k/2)! only.
     """
     across, along, growth = constants[SPIN]
     along = along + growth * (time - constants[START])

@@ -116,7 +116,7 @@ class Flights:
         return position, orientation
 
     def velocities(self, time, indices=None):
-        """Return linear [m/s] and angular [rad/s] velocities, (3, k) each, world axes, as `poses`."""
+        """Return linear and angular velocities, (3, k) each, [m/s] and [rad/s], as `poses`."""
         elapsed = self._elapsed(time, indices)
         rate = self._fixed_axis.rates(elapsed, indices)
         for rotations in self._present():

@@ -15,11 +15,14 @@
 """
 A free rotation as sums over multiples of a hyperbolic argument: k'^2 below 0.03.
 
-q is the nome of k', p_n = q^(n(n+1)/2), c_n = p_n cos (2n+1) zeta and
-d_n = p_n sin (2n+1) zeta with a constant zeta; x = pi u / (4 K') within the half period j of u:
+The theta functions of `trigonometric` after the modular transformation (DLMF 20.7(viii)), whose
+series converge the faster the nearer k is to 1: near the middle axis, where the momentum rests
+long and then turns over, down to the separatrix k = 1 itself. With q the nome of k',
+x = pi u / (4 K') within the half period j of u, p_n = q^(n(n+1)/2), c_n = p_n cos (2n+1) zeta,
+d_n = p_n sin (2n+1) zeta and a constant zeta, n from 0 to 3,
 
-    a = sum_n [c_n cosh (2n+1)x - i sign d_n sinh (2n+1)x],                           n = 0 to 3
-    b = sign (-1)^j sum_n (-1)^n [c_n sinh (2n+1)x - i sign d_n cosh (2n+1)x]
+    a = sum [c_n cosh (2n+1)x - i sign d_n sinh (2n+1)x]
+    b = sign (-1)^j sum (-1)^n [c_n sinh (2n+1)x - i sign d_n cosh (2n+1)x].
 """
 
 from math import pi

@@ -16,8 +16,8 @@
 Sums over multiples of an angle as polynomials.
 
 The two forms of a free rotation, `trigonometric` and `hyperbolic`, sum theta functions with few
-terms. With S = -sin^2 z the multiple-angle formulas are polynomials of S, all of whose coefficients
-are positive, and the same ones hold for hyperbolic functions with S = sinh^2 x.
+terms. With S = -sin^2 z the multiple-angle formulas are polynomials of S with only positive
+coefficients, and the same ones hold for hyperbolic functions with S = sinh^2 x.
 """
 
 EVEN_COSINE = ((1,), (1, 2), (1, 8, 8), (1, 18, 48, 32))

@@ -19,8 +19,8 @@ Along the axes of `polhode_axes`, in units of its size and with u growing unifor
 
     m1 = A1 cn u,  m2 = sign A2 sn u,  m3 = A3 dn u,   A1^2 + A3^2 = 1, A2^2 = A1^2 / f2.
 
-Nothing divides by m1^2 + m2^2, so rotation about axis 3 is an ordinary point, as are symmetric tops
-and the separatrix. Written for floats and arrays alike.
+(Jacobi 1850; DLMF chapter 22). Nothing divides by m1^2 + m2^2, so rotation about axis 3 is an
+ordinary point, as are symmetric tops and the separatrix. Written for floats and arrays alike.
 """
 
 from dataclasses import dataclass, fields

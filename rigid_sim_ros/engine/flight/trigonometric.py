@@ -15,11 +15,27 @@
 """
 A free rotation as sums over multiples of a uniformly growing angle: k'^2 of at least 0.03.
 
-With s the nome of k and g = e^{2 eta} / sqrt(s) scaled as below,
-theta4 and theta1 at zeta - i sign eta are, up to a common factor,
+The attitude in the frame of the momentum is a swing, the shortest turn of the momentum's direction
+in the body onto axis 3, after a twist phi about it, whose rate is bounded and smooth:
 
-    a = 1 + sum_n (-1)^n [(P_n + R_n) cos 2n zeta + i sign (P_n - R_n) sin 2n zeta],   n = 1, 2, 3
-    b = sum_n (-1)^n [sign (B_n + C_n) sin (2n+1) zeta - i (B_n - C_n) cos (2n+1) zeta],  n = 0 to 3
+    phi' = L / I3 + (2 T / L - L / I3) / (1 + m3).
+
+Solved, the pair (a, b) = (w + i z, x + i y) of the quaternion x, y, z, w is two theta functions,
+
+    a ~ e^(i turn t) theta4(zeta - i sign eta | Q)
+    b ~ sign e^(i turn t) theta1(zeta - i sign eta | Q),
+
+where zeta grows uniformly and Q is the square of the nome s of the modulus k; dividing by
+sqrt(|a|^2 + |b|^2) removes their common factor. R. van Zon and J. Schofield, Numerical
+implementation of the exact dynamics of free rigid bodies, J. Comput. Phys. 225 (2007), compute the
+rates by Jacobi functions and the twist by a sum of its own; here both come from the two series,
+with no elliptic integral of the third kind, and length and momentum hold to rounding.
+With g = s^(1/2) e^eta and v = s / g the series (DLMF 20.2) are, n from 0 or 1 to 3,
+
+    a = 1 + sum (-1)^n [(P_n + R_n) cos 2n zeta + i sign (P_n - R_n) sin 2n zeta]
+    b = sum (-1)^n [sign (B_n + C_n) sin (2n+1) zeta - i (B_n - C_n) cos (2n+1) zeta]
+
+    P_n = s^(2n^2 - n) g^2n,    B_n = s^(2n^2 + n) g^(2n + 1),    R_n, C_n the same with v.
 """
 
 from math import pi

@@ -197,10 +197,11 @@ def rate_bound(constants, start, end):
     """
     Return upper bounds of |w|, (k,), of bodies with constants (., k) between times (k,).
 
-    Three hold, the least is returned. With f = 1 / moment: |w| <= f_max |L|, where L moves along a
-    line. |w| <= sqrt(f_max) e, where e = sqrt(2 T) grows at most by |torque| sqrt(f_max) a second,
-    from de/dt = torque . w / e. And as the sum of L_i^2 f_i^2 for given sums L^2 of L_i^2 and e^2
-    of     L_i^2 f_i is largest with L_i^2 at both ends: |w|^2 <= (f_max + f_min) e^2 - f_max f_min L^2.
+    Three hold, the least is returned. With f = 1 / moment: |w| <= f_max |L|, where L moves along
+    a line. |w| <= sqrt(f_max) e, where e = sqrt(2 T) grows at most by |torque| sqrt(f_max) a
+    second, from de/dt = torque . w / e. And |w|^2 <= (f_max + f_min) e^2 - f_max f_min L^2, as the
+    sum of L_i^2 f_i^2 for given sums L^2 of L_i^2 and e^2 of L_i^2 f_i is largest with all of
+    L_i^2 at the two extreme f.
     """
     moments, rate, torque = (np.array(constants[rows]) for rows in (MOMENTS, RATE, TORQUE))
     # without an end there is no bound; any finite time will do meanwhile

@@ -108,7 +108,7 @@ def by_taylor(moments, quaternion, rate, torque, time):
 
 
 def reach(series):
-    """Return the step whose last terms are below 2^-160, with so few digits that sums are exact."""
+    """Return the step whose last terms are below 2^-160, of few digits so that sums are exact."""
     bits = min((BITS - 160 - abs(one[order]).bit_length()) / order
                for one in series for order in (ORDER - 1, ORDER))
     return Fraction(int(2 ** bits * 2 ** 30), 2 ** 30)

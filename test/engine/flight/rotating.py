@@ -62,12 +62,11 @@ def angle_error(quaternion, exact):
     return 2 * np.arctan2(sqrt(sum(part * part for part in vector)), abs(float(scalar)))
 
 
-def begin_one(flights, body, time, moments=None, **given):
+def begin_one(flights, body, time, **given):
     """Begin a flight of one body; what is not given is zero, or the identity."""
     zero = (0.0, 0.0, 0.0)
-    values = dict(position=zero, orientation=(0.0, 0.0, 0.0, 1.0), linear_velocity=zero,
-                  angular_velocity=zero, acceleration=zero, torque=zero)
-    values.update(given)
+    values = {'position': zero, 'orientation': (0.0, 0.0, 0.0, 1.0), 'linear_velocity': zero,
+              'angular_velocity': zero, 'acceleration': zero, 'torque': zero, **given}
     flights.begin(np.array([body]), time, *(
         np.array(value, dtype=float)[:, None] for value in values.values()))
 

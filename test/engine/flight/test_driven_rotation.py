@@ -99,7 +99,8 @@ def test_scales_of_time_and_body_do_not_matter(moments):
     results = []
     for speed, size in ((1.0, 1.0), (1e-30, 1e-15), (1e4, 1e12), (2.0 ** -300, 2.0 ** 100)):
         flights = Flights(np.array([moments]).T * size)
-        begin_one(flights, 0, 0.0, angular_velocity=rate * speed, torque=torque * speed ** 2 * size)
+        begin_one(flights, 0, 0.0, angular_velocity=rate * speed,
+                  torque=torque * speed ** 2 * size)
         results.append(flights.motion(0, 5.0 / speed)[1])
     assert abs(np.array(results) - results[0]).max() < 2e-13
 

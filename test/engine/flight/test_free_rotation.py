@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Rotation without torque against stored digits, conserved quantities and itself at many scales."""
+"""Rotation without torque against stored digits, what is conserved, and itself at many scales."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.flight.polhode import polhode_of_one
 
-import reference_rotations
+import reference_rotations  # noqa: I100
 from rotating import (
     angle_error, begin_one, case, CASES, cases, flights_of, momentum_and_energy,
     random_quaternions)
