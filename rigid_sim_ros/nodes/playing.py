@@ -36,9 +36,9 @@ from rigid_sim_ros.nodes.interfaces import interface, quality_of_service
 from rigid_sim_ros.nodes.playback import Playback
 from rigid_sim_ros.nodes.running import drive, USER_ERROR
 from rigid_sim_ros.recording import RecordingError
+from rigid_sim_ros.recording.bag_metadata import quality_profiles
 from rigid_sim_ros.topics import PUBLISHED, Quality
 from std_srvs.srv import SetBool, Trigger
-import yaml
 
 EXECUTABLE = 'rigid_sim_player'
 
@@ -108,14 +108,12 @@ def _positive(text):
 
 def quality_of(topic):
     """Return the `topics.Quality` of a `BagTopic`; what it does not say is the usual."""
-    try:
-        profile = dict(yaml.safe_load(topic.profiles)[0])
-        depth = int(profile.get('depth', 10))
-    except (yaml.YAMLError, TypeError, ValueError, LookupError):
-        return Quality()
+    profiles = quality_profiles(topic)
+    profile = profiles[0] if profiles else {}
     durability, reliability = profile.get('durability'), profile.get('reliability')
+    depth = profile.get('depth')
     return Quality(
-        depth=min(max(depth, 1), _LARGEST_DEPTH),
+        depth=min(max(depth, 1), _LARGEST_DEPTH) if isinstance(depth, int) else 10,
         reliability=reliability if reliability in _RELIABILITIES else 'reliable',
         durability=durability if durability in _DURABILITIES else 'volatile')
 

@@ -19,7 +19,10 @@ Version 9 of the format, that of ROS 2 Jazzy (rosbag2_storage: yaml.hpp, qos.cpp
 """
 
 from dataclasses import dataclass, field
+from functools import lru_cache
+import json
 import os
+import re
 
 from rigid_sim_ros.recording.definitions import ROS_DISTRO, schema_text, type_hash
 import yaml
@@ -27,6 +30,10 @@ import yaml
 METADATA_FILE = 'metadata.yaml'
 ROOT_KEY = 'rosbag2_bagfile_information'
 VERSION = 9
+
+_PLAIN = re.compile(r'[A-Za-z/_][A-Za-z0-9/_.]*')
+
+_RESERVED = frozenset(('true', 'false', 'null', 'yes', 'no', 'on', 'off', 'y', 'n'))
 
 _INFINITE = {'sec': 9223372036, 'nsec': 854775807}
 
@@ -89,6 +96,22 @@ def quality_profile(quality):
         'avoid_ros_namespace_conventions': False}
 
 
+def quality_profiles(topic):
+    """Return the quality of service of a `BagTopic` as a list of dicts; empty if unreadable."""
+    return _parsed(topic.profiles)
+
+
+@lru_cache(maxsize=256)
+def _parsed(text):
+    try:
+        # no aliases, with which a short text can stand for an endless one
+        profiles = [] if '&' in text else yaml.safe_load(text)
+    except yaml.YAMLError:
+        return []
+    return [item for item in profiles if isinstance(item, dict)] if isinstance(
+        profiles, list) else []
+
+
 def bag_metadata(topics, files):
     """
     Return what metadata.yaml holds under its root key.
@@ -109,7 +132,7 @@ def bag_metadata(topics, files):
         'topics_with_message_count': [{
             'topic_metadata': {
                 'name': topic.name, 'type': topic.type_name, 'serialization_format': 'cdr',
-                'offered_qos_profiles': yaml.safe_load(topic.profiles),
+                'offered_qos_profiles': quality_profiles(topic),
                 'type_description_hash': topic.type_hash},
             'message_count': counts[topic.name]} for topic in topics],
         'compression_format': '', 'compression_mode': '',
@@ -122,24 +145,49 @@ def bag_metadata(topics, files):
         'custom_data': {}, 'ros_distro': ROS_DISTRO}
 
 
-def to_yaml(value):
-    """Return YAML in block style, keys in their order."""
-    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, default_flow_style=False)
+def to_yaml(value, indent=''):
+    """
+    Return dicts, lists, text, integers and booleans as YAML in block style.
+
+    PyYAML takes 50 ms for a bag's metadata, with the interpreter to itself: too long beside a
+    simulation in real time.
+    """
+    if isinstance(value, dict) and value:
+        return ''.join(f'{indent}{_scalar(key)}:{_nested(item, indent)}'
+                       for key, item in value.items())
+    if isinstance(value, list) and value:
+        # the first line of an item is behind its dash
+        items = (_nested_item(item, indent) for item in value)
+        return ''.join(f'{indent}- {item}' for item in items)
+    return f'{indent}{_scalar(value)}\n'
 
 
-class _Dumper(yaml.SafeDumper):
-    """Writes out what is there twice, because rosbag2 reads no anchors everywhere."""
+def _nested(value, indent):
+    if isinstance(value, (dict, list)) and value:
+        return '\n' + to_yaml(value, indent + '  ')
+    return f' {_scalar(value)}\n'
 
-    def ignore_aliases(self, data):
-        return True
+
+def _nested_item(value, indent):
+    return to_yaml(value, indent + '  ')[len(indent) + 2:]
+
+
+def _scalar(value):
+    """Return a scalar or an empty collection, in quotes if it could be taken for another."""
+    if isinstance(value, str) and _PLAIN.fullmatch(value) and value.lower() not in _RESERVED:
+        return value
+    return json.dumps(value)
 
 
 def write_metadata(folder, topics, files):
-    """Write metadata.yaml of a bag in one stroke: whoever reads sees the old or the new one."""
+    """
+    Write metadata.yaml of a bag, and return its path.
+
+    It is written in one stroke: whoever reads sees the old or the new one.
+    """
     path = os.path.join(folder, METADATA_FILE)
     text = to_yaml({ROOT_KEY: bag_metadata(topics, files)})
     with open(path + '.new', 'w', encoding='utf-8') as stream:
         stream.write(text)
-        stream.flush()
-        os.fsync(stream.fileno())
     os.replace(path + '.new', path)
+    return path

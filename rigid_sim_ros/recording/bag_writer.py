@@ -17,7 +17,7 @@
 import os
 
 from rigid_sim_ros.recording.bag_metadata import bag_metadata, to_yaml, write_metadata
-from rigid_sim_ros.recording.mcap_file import McapFile
+from rigid_sim_ros.recording.mcap_file import McapFile, sync_path
 
 CHUNK_BYTES = 2**20
 """A chunk is written when it has grown to so many bytes, if its time is not up before."""
@@ -47,6 +47,7 @@ class BagWriter:
         self._max_bytes, self._max_ns = max_bytes, max_ns
         self._latched = {}
         self._summaries = []
+        self._unsynced = set()
         self._finished_bytes = 0
         self._start_ns = self._last_ns = 0
         os.makedirs(path)
@@ -82,9 +83,15 @@ class BagWriter:
             self._file.close_chunk()
 
     def flush(self):
-        """Put everything on the disk."""
+        """Put everything on the disk, safe from a power cut."""
         self._file.close_chunk()
         self._file.sync()
+        self.sync_finished()
+
+    def sync_finished(self):
+        """Make what was finished since the last time safe from a power cut."""
+        while self._unsynced:
+            sync_path(self._unsynced.pop())
 
     def check(self):
         """Raise FileNotFoundError if the file was removed meanwhile."""
@@ -92,7 +99,7 @@ class BagWriter:
             raise FileNotFoundError(0, 'the file was removed')
 
     def finish(self):
-        """Finish the last file and the sidecar."""
+        """Finish the last file and the sidecar; `sync_finished` is left to do."""
         self._finish_file()
         self._write_sidecar()
 
@@ -127,10 +134,11 @@ class BagWriter:
         self._file.close_chunk()
         self._write_bag_metadata()
         self._file.finish()
+        self._unsynced |= {self._file.path, self._path}
 
     def _write_bag_metadata(self):
         self._file.write_metadata('rosbag2', {
             'serialized_metadata': to_yaml(bag_metadata(self._topics, self._summaries))})
 
     def _write_sidecar(self):
-        write_metadata(self._path, self._topics, self._summaries)
+        self._unsynced.add(write_metadata(self._path, self._topics, self._summaries))

@@ -81,6 +81,7 @@ class McapFile:
         self._compress = make_compress()
         self._stream = open(path, 'xb', buffering=0)
         _lock(self._stream)
+        self.path = path
         self.size = 0
         self.summary = FileSummary(os.path.basename(path))
         self._schemas, self._channels = _declare(topics)
@@ -166,7 +167,6 @@ class McapFile:
         try:
             self.close_chunk()
             self._put(self._ending())
-            self.sync()
         finally:
             self._stream.close()
 
@@ -252,6 +252,15 @@ def _lock(stream):
     except OSError:
         pass  # a file system without locks: nobody can tell then
     return True
+
+
+def sync_path(path):
+    """Make a file or folder safe from a power cut."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def is_being_written(path):

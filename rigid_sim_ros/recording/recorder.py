@@ -193,6 +193,7 @@ class Recorder:
             self._condition.notify_all()
         self._thread.join(max(0.0, self._closing_until + _FINISH_SECONDS - monotonic()))
         if self._thread.is_alive():
+            # no error if only the disk has not confirmed yet: the phase is `CLOSED` then
             self._fail('the disk does not take the rest; once it does, '
                        f'rigid_sim_recover {self.path} finishes the bag')
         return self.state()
@@ -217,6 +218,8 @@ class Recorder:
             with self._condition:
                 if self._phase == RECORDING:
                     self._phase = CLOSED
+            # whole for all who read it by now; a slow disk keeps nobody waiting
+            self._bag.sync_finished()
         except OSError as error:
             self._fail(error.strerror or str(error))
             self._bag.save()
@@ -238,10 +241,10 @@ class Recorder:
             if batch and chunk_due is None:
                 # the oldest message may have waited for one batch and will wait for another
                 chunk_due = monotonic() + max(0.0, self._chunk_seconds - 2 * _BATCH_SECONDS)
+            self._bag.check()
             if chunk_due is not None and monotonic() >= chunk_due:
                 self._bag.flush()
                 chunk_due = None
-            self._bag.check()
             if self._closing_until is not None and not self._queue:
                 return
 

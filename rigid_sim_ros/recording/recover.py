@@ -27,7 +27,7 @@ from rigid_sim_ros.recording.bag_metadata import (
     bag_metadata, FileSummary, to_yaml, write_metadata)
 from rigid_sim_ros.recording.bag_writer import CHUNK_BYTES
 from rigid_sim_ros.recording.errors import RecordingError
-from rigid_sim_ros.recording.mcap_file import is_being_written, McapFile
+from rigid_sim_ros.recording.mcap_file import is_being_written, McapFile, sync_path
 from rigid_sim_ros.recording.mcap_scan import McapScan
 
 _COMPRESSION = 'zstd'
@@ -112,6 +112,7 @@ def _rewrite(path, summaries, report):
     file.write_metadata('rosbag2', {'serialized_metadata': to_yaml(
         bag_metadata(tuple(scan.topics.values()), [*summaries, file.summary]))})
     file.finish()
+    sync_path(new)
     if scan.finished or len(scan.damage) > 1:
         os.replace(path, path + '.damaged')
     os.replace(new, path)
