@@ -30,7 +30,7 @@ def random():
 
 
 def quaternions(random, count):
-    """Return unit quaternions (4, count), evenly spread (Marsaglia 1972)."""
+    """Return evenly spread unit quaternions, (4, count) (Marsaglia 1972)."""
     q = random.normal(size=(4, count))
     return q / np.linalg.norm(q, axis=0)
 

@@ -40,7 +40,7 @@ def flight(moments, rate, torque, scale):
     return flights
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(MOMENTS, VECTORS, VECTORS, strategies.sampled_from((1e-3, 1.0, 5.0)),
        strategies.booleans(), strategies.floats(0.0, 2.0), strategies.floats(0.01, 2.0))
 def test_no_rate_and_no_acceleration_exceeds_its_bound(
@@ -74,10 +74,10 @@ def test_no_rate_and_no_acceleration_exceeds_its_bound(
     ((2.0, 2.0, 1.0), (1.0, 2.0, 3.0))])
 def test_without_torque_bounds_are_reached(moments, rate):
     flights = flight(moments, rate, (0.0, 0.0, 0.0), 1.0)
-    times = np.linspace(1.0, 40.0, 20_001)
+    times = np.linspace(1.0, 30.0, 4001)
     rates = np.array([flights.motion(0, time)[3] for time in times.tolist()])
     largest = np.sqrt((rates * rates).sum(axis=1)).max()
-    assert flights.rate_bound(INDEX, 1.0, np.inf)[0] == pytest.approx(largest, rel=1e-4)
+    assert flights.rate_bound(INDEX, 1.0, np.inf)[0] == pytest.approx(largest, rel=1e-3)
     steps = np.sqrt((np.diff(rates, axis=0) ** 2).sum(axis=1)).max() / (times[1] - times[0])
     assert flights.rate_derivative_bound(INDEX, 1.0, np.inf)[0] == pytest.approx(
         steps, rel=1e-3, abs=1e-12)

@@ -72,7 +72,7 @@ def test_centres_follow_parabolas_to_rounding(time):
     position, _, velocity, _, acceleration, _ = arguments
     now = start + time
     elapsed = Fraction(now) - Fraction(start)
-    for body in random.permutation(count).tolist():
+    for body in random.permutation(count)[:8].tolist():
         for axis in range(3):
             x, v, a = (Fraction(values[axis, body]) for values in (
                 position, velocity, acceleration))

@@ -127,7 +127,7 @@ def test_ten_million_evaluations_do_not_drift():
     quaternion = flights.poses_at_times(0, times)[1]
     assert abs((quaternion * quaternion).sum(axis=0) - 1).max() < 2e-15
     before = flights.motion(0, 30.0)
-    for time in times[:2000].tolist():
+    for time in times[:1000].tolist():
         flights.motion(0, time)
         flights.poses(time)
     assert flights.motion(0, 30.0) == before
