@@ -86,13 +86,12 @@ class Playback:
 
     def _survey(self):
         bag = Bag(self._path)
-        for _ in bag.messages():
-            pass
-        unknown = sorted(self._chosen - set(bag.topics))
+        there = {message.topic for message in bag.messages()}
+        unknown = sorted(self._chosen - there)
         if unknown:
-            raise RecordingError(f'{self._path} has no topic {unknown[0]!r}; it has '
-                                 f'{", ".join(sorted(bag.topics))}')
-        return {name: topic for name, topic in bag.topics.items() if self._is_wanted(name)}
+            raise RecordingError(f'{self._path} has no messages of {unknown[0]!r}, but of '
+                                 f'{", ".join(sorted(there))}')
+        return {name: bag.topics[name] for name in sorted(there) if self._is_wanted(name)}
 
     def _is_wanted(self, name):
         if self._chosen:
