@@ -27,16 +27,18 @@ def edge_contacts(a, b, axes, pairs):
     best = axes.edges[:, pairs].argmax(axis=0)
     axis_a, axis_b = np.divmod(best, 3)
     edge_a, edge_b = rotation_a[:, axis_a, column], rotation_b[:, axis_b, column]
-    normal = cross(edge_a, edge_b)
+    product = cross(edge_a, edge_b)
+    square = dot(product, product)
     between = b.center[:, pairs] - a.center[:, pairs]
-    normal *= np.copysign(1 / np.sqrt(dot(normal, normal)), dot(normal, between))
+    normal = product * np.copysign(1 / np.sqrt(square), dot(product, between))
     half_a, half_b = a.half_extents[:, pairs], b.half_extents[:, pairs]
     middle_a = a.center[:, pairs] + _middle(rotation_a, half_a, axis_a, normal)
     middle_b = b.center[:, pairs] + _middle(rotation_b, half_b, axis_b, -normal)
-    along_a, along_b = _crossing(edge_a, edge_b, middle_b - middle_a)
-    # beyond an end only if rounding or deep penetration put it there
-    along_a = np.clip(along_a, -half_a[axis_a, column], half_a[axis_a, column])
-    along_b = np.clip(along_b, -half_b[axis_b, column], half_b[axis_b, column])
+    # how far along both lines, from the middles, they are nearest (Ericson 2005, section 5.1.8)
+    cosine, apart = dot(edge_a, edge_b), middle_b - middle_a
+    ahead_a, ahead_b = dot(edge_a, apart), dot(edge_b, apart)
+    along_a = _within((ahead_a - cosine * ahead_b) / square, half_a[axis_a, column])
+    along_b = _within((cosine * ahead_a - ahead_b) / square, half_b[axis_b, column])
     point = 0.5 * (middle_a + along_a * edge_a + middle_b + along_b * edge_b)
     return Contacts(a.index[pairs], b.index[pairs], point, normal, axes.edges[best, pairs],
                     np.full(len(pairs), EDGES), edge_a, edge_b)
@@ -49,14 +51,6 @@ def _middle(rotation, half_extents, axis, direction):
     return transform(rotation, corner)
 
 
-def _crossing(edge_a, edge_b, between):
-    """
-    Return how far [m] along the edges, from their middles, they are nearest to each other.
-
-    Ericson 2005, section 5.1.8, for lines with unit direction; `between` is from a to b.
-    """
-    cosine = dot(edge_a, edge_b)
-    sine = cross(edge_a, edge_b)
-    square = dot(sine, sine)
-    ahead_a, ahead_b = dot(edge_a, between), dot(edge_b, between)
-    return ((ahead_a - cosine * ahead_b) / square, (cosine * ahead_a - ahead_b) / square)
+def _within(along, half):
+    """Return positions on edges, moved to their ends where rounding or depth put them beyond."""
+    return np.minimum(np.maximum(along, -half), half)

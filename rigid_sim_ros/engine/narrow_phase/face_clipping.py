@@ -38,8 +38,6 @@ _TINY = 1e-300
 _NEXT, _AFTER = np.array((1, 2, 0)), np.array((2, 0, 1))
 _CORNER_X = np.array((1.0, -1.0, -1.0, 1.0))[:, np.newaxis]
 _CORNER_Y = np.array((1.0, 1.0, -1.0, -1.0))[:, np.newaxis]
-_LATER, _EARLIER = np.tril_indices(12, -1)
-_FIRST_OF_LATER = np.flatnonzero(np.diff(_LATER, prepend=0))
 
 
 def face_contacts(a, b, axes, pairs, of_b, margin, size):
@@ -52,12 +50,13 @@ def face_contacts(a, b, axes, pairs, of_b, margin, size):
     margin, size = margin[pairs], size[pairs]
     points, valid = _clip(frame, CLIP * size)
     valid &= points[2] < margin
-    _drop_repeated(points, valid, SAME_POINT * size)
     _keep_support(frame, points, valid, margin)
     pair, slot = np.nonzero(valid.T)
-    gap = points[2, slot, pair]
-    local = np.stack((points[0, slot, pair], points[1, slot, pair],
-                      frame.half[2, pair] + 0.5 * gap))
+    local = points[:, slot, pair]
+    distinct = _distinct(pair, local, SAME_POINT * size[pair])
+    pair, local = pair[distinct], local[:, distinct]
+    gap = local[2].copy()
+    local[2] = frame.half[2, pair] + 0.5 * gap
     point = frame.origin[:, pair] + (frame.world[:, :, pair] * local).sum(axis=1)
     of_b = of_b[pair]
     normal = np.where(of_b, -1.0, 1.0) * frame.world[:, 2, pair]
@@ -136,11 +135,13 @@ def _corners_inside(frame):
             (np.abs(along_x) <= 1.0) & (np.abs(along_y) <= 1.0))
 
 
-def _drop_repeated(points, valid, tolerance):
-    """Clear `valid`, (12, q), where an earlier slot holds the same point."""
-    apart = np.abs(points[:2, _LATER] - points[:2, _EARLIER]).max(axis=0)
-    same = (apart < tolerance) & valid[_EARLIER]
-    valid[1:] &= ~np.logical_or.reduceat(same, _FIRST_OF_LATER, axis=0)
+def _distinct(pair, points, tolerance):
+    """Return which of the points, (3, k), are not one that came before in the same pair, (k,)."""
+    distinct = np.ones(len(pair), dtype=bool)
+    for back in range(1, np.bincount(pair, minlength=1).max()):
+        apart = np.abs(points[:2, back:] - points[:2, :-back]).max(axis=0)
+        distinct[back:] &= (pair[back:] != pair[:-back]) | (apart >= tolerance[back:])
+    return distinct
 
 
 def _keep_support(frame, points, valid, margin):

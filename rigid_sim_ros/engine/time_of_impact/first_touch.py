@@ -72,13 +72,11 @@ def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
         Which of the pairs touch at the start and were just resolved.
 
     """
-    start = np.broadcast_to(np.asarray(start, dtype=float), np.shape(pairs_a))
-    guarded = np.asarray(guarded, dtype=bool)
+    start = np.full(len(pairs_a), start, dtype=float)
     if len(pairs_a) <= FEW:
         return np.array([
-            _first_touch(bodies, flights, a, b, began, end, [not untold])
-            for a, b, began, untold in zip(*(np.asarray(values).tolist() for values in (
-                pairs_a, pairs_b, start, guarded)))], dtype=float)
+            _first_touch(bodies, flights, int(a), int(b), float(began), end, [not untold])
+            for a, b, began, untold in zip(pairs_a, pairs_b, start, guarded)])
     times = np.full(len(pairs_a), np.inf)
     for group in PairGroups(bodies, pairs_a, pairs_b).groups:
         where = group.where
