@@ -155,20 +155,41 @@ _LARGEST_ARROW_COUNT = 100
 """More contacts than that are not drawn; the events topic has them all."""
 
 
+_PLANE_SIZE = (20.0, 20.0, 0.01)
+"""Sides [m] of the slab that stands for a plane."""
+
+
+def _plane_pose(plane):
+    """Return position and orientation of a slab whose upper side lies in a plane."""
+    normal = np.array(plane.normal)
+    position = normal * (plane.offset - _PLANE_SIZE[2] / 2)
+    # the shortest turn of the z axis to the normal; half a turn about x if they are opposite
+    turn = np.array([-normal[1], normal[0], 0.0, 1.0 + normal[2]])
+    length = np.linalg.norm(turn)
+    return position, turn / length if length > 1e-9 else np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def _slabs_and_solids(scene):
+    """Return kinds, sides, positions and orientations: moving bodies, fixed ones, planes."""
+    bodies = sorted(scene.bodies, key=lambda body: body.fixed)
+    poses = [(body.position, body.orientation) for body in bodies]
+    poses += [_plane_pose(plane) for plane in scene.planes]
+    kinds = [messages.SPHERE if body.shape.kind == 'sphere' else messages.CUBE for body in bodies]
+    sides = [tuple(2 * extent for extent in body.shape.half_extents) for body in bodies]
+    return (kinds + [messages.CUBE] * len(scene.planes),
+            sides + [_PLANE_SIZE] * len(scene.planes),
+            np.array([position for position, _ in poses], dtype=float).reshape(-1, 3),
+            np.array([orientation for _, orientation in poses], dtype=float).reshape(-1, 4))
+
+
 def _markers(source):
     simulation = source.simulation
-    bodies = [body for body in simulation.scene.bodies if not body.fixed]
-    bodies += [body for body in simulation.scene.bodies if body.fixed]
     moving_count = len(simulation.names)
-    position = np.array([body.position for body in bodies], dtype=float).reshape(-1, 3)
-    orientation = np.array([body.orientation for body in bodies], dtype=float).reshape(-1, 4)
-    color = np.ones((len(bodies), 4))
-    color[:, :3] = _COLORS[np.arange(len(bodies)) % len(_COLORS)]
+    kinds, sides, position, orientation = _slabs_and_solids(simulation.scene)
+    color = np.ones((len(kinds), 4))
+    color[:, :3] = _COLORS[np.arange(len(kinds)) % len(_COLORS)]
     color[moving_count:, :3] = 0.5
-    encoder = messages.MarkerArrayEncoder(
-        source.frame_id,
-        [messages.SPHERE if body.shape.kind == 'sphere' else messages.CUBE for body in bodies],
-        [[2 * extent for extent in body.shape.half_extents] for body in bodies], color)
+    encoder = messages.MarkerArrayEncoder(source.frame_id, kinds, sides, color)
 
     def encode(time_ns):
         position[:moving_count] = simulation.position
