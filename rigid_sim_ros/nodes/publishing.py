@@ -112,6 +112,7 @@ class Publications:
             reliability = self._reliability if is_stream else None
             self._publications[row.name] = Publication(
                 self._node, row, self._source, self._recording, reliability)
+            self._sort()
 
     def is_open(self, row):
         """Tell whether a row's topic is published."""
@@ -122,6 +123,7 @@ class Publications:
         publication = self._publications.pop(row.name, None)
         if publication is not None:
             publication.destroy(self._node)
+            self._sort()
 
     def send_state(self, time, collisions):
         """Publish what belongs to a state: the state, and the events since the last one."""
@@ -164,7 +166,12 @@ class Publications:
 
     def of(self, when):
         """Return the publications sent at one of the occasions in `topics`, as a list."""
-        return [publication for publication in self if publication.row.when == when]
+        return self._occasions.get(when, ())
+
+    def _sort(self):
+        self._occasions = {}
+        for publication in self:
+            self._occasions.setdefault(publication.row.when, []).append(publication)
 
     def _send(self, when, time, **to):
         for publication in self.of(when):

@@ -26,7 +26,6 @@ from rigid_sim_ros.nodes.announcement import EXECUTABLE, usage
 from rigid_sim_ros.nodes.executors import LONGEST_WAIT, make_executor
 from rigid_sim_ros.nodes.node import SimulationNode
 from rigid_sim_ros.nodes.parameters import ParameterError
-from rigid_sim_ros.nodes.signals import Interrupted
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.scene import SceneError
 
@@ -75,8 +74,6 @@ def _run_node(stop):
         executor.add_node(node.ros)
         node.start()
         drive([node], executor, stop)
-    except Interrupted:
-        pass
     finally:
         # whatever ended the loop, the recording is finished: signals change nothing by now
         stop.ignore()

@@ -23,8 +23,12 @@ PATIENCE = 1.0
 """Wall time [s] an advance may go on after a signal; then it is broken off."""
 
 
-class Interrupted(Exception):
-    """An advance was broken off because the process has to end."""
+class Interrupted(BaseException):
+    """
+    Something was broken off because the process has to end.
+
+    Like KeyboardInterrupt no Exception, so that nothing on the way takes it for its own.
+    """
 
 
 class StopRequest:
@@ -59,9 +63,9 @@ class StopRequest:
             signal.signal(number, signal.SIG_IGN)
 
     @contextmanager
-    def breakable(self):
-        """Let `Interrupted` be raised in the block `PATIENCE` after a stop was requested."""
-        self._breakable = True
+    def breakable(self, patience=PATIENCE):
+        """Let `Interrupted` be raised in the block, `patience` [s] after a stop is requested."""
+        self._breakable, self._patience = True, patience
         try:
             yield
         finally:
@@ -70,6 +74,8 @@ class StopRequest:
     def _request(self, number, frame):
         if not self.requested:
             self.requested = True
+            if self._breakable and not self._patience:
+                raise Interrupted
             signal.setitimer(signal.ITIMER_REAL, PATIENCE)
 
     def _break_off(self, number, frame):

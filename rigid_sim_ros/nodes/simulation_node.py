@@ -16,7 +16,7 @@
 
 import sys
 
-from rigid_sim_ros.nodes.signals import StopRequest
+from rigid_sim_ros.nodes.signals import Interrupted, StopRequest
 
 
 def main(arguments=None):
@@ -27,11 +27,14 @@ def main(arguments=None):
     """
     stop = StopRequest()
     stop.install()
-    # imported only now: importing ROS takes half a second, in which Ctrl-C shall end the process
-    # as quietly as it does later
-    from rigid_sim_ros.nodes.running import run
     try:
+        # imported only now: importing ROS and NumPy takes most of a second, in which Ctrl-C shall
+        # end the process as quietly as it does later
+        with stop.breakable(patience=0):
+            from rigid_sim_ros.nodes.running import run
         return run(sys.argv if arguments is None else arguments, stop)
+    except Interrupted:
+        return 0
     finally:
         stop.ignore()
 

@@ -24,6 +24,8 @@ pytest.importorskip('rclpy')
 
 from node_harness import Client, NodeProcess  # noqa: E402, I100
 from rigid_sim_ros.nodes.parameters import PARAMETERS  # noqa: E402
+from rigid_sim_ros.nodes.running import run  # noqa: E402
+from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
 from rigid_sim_ros.topics import COMMANDS, PUBLISHED, SERVICES  # noqa: E402
 import yaml  # noqa: E402
 
@@ -86,16 +88,27 @@ BAD_SCENES = {
 }
 
 
+def run_here(capfd, *arguments):
+    """Run the executable's code in this process; return exit code, stdout and stderr."""
+    code = run(['rigid_sim_node', *arguments], StopRequest())
+    return (code, *capfd.readouterr())
+
+
 @pytest.mark.parametrize('text, scene, expected', BAD_SCENES.values(), ids=BAD_SCENES)
-def test_bad_scene_is_one_line_and_exit_code_2(tmp_path, text, scene, expected):
+def test_bad_scene_is_one_line_and_exit_code_2(tmp_path, capfd, text, scene, expected):
     if text is not None:
         scene = tmp_path / 'scene.yaml'
         scene.write_text(text)
-    with NodeProcess(tmp_path, scene=scene) as process:
+    code, out, error = run_here(capfd, '--ros-args', '-p', f'scene:={scene}')
+    assert (code, out) == (2, '')
+    assert len(error.splitlines()) == 1, error
+    assert all(word in error for word in expected), error
+
+
+def test_bad_scene_ends_the_process_with_exit_code_2(tmp_path):
+    with NodeProcess(tmp_path, scene='/nowhere/scene.yaml') as process:
         assert process.wait() == 2
-        lines = process.error.splitlines()
-        assert len(lines) == 1, lines
-        assert all(word in lines[0] for word in expected), lines[0]
+        assert len(process.error.splitlines()) == 1, process.error
         assert process.output == ''
 
 
@@ -106,21 +119,20 @@ def test_bad_scene_is_one_line_and_exit_code_2(tmp_path, text, scene, expected):
     ('command_axes', 'bodies', "parameter command_axes is 'bodies'; allowed: world, body"),
     ('start_paused', 3, 'parameter start_paused is 3; allowed: true, false'),
     ('scene', 7, 'parameter scene is 7; allowed: text')])
-def test_bad_parameter_is_one_line_and_exit_code_2(tmp_path, name, value, expected):
-    with NodeProcess(tmp_path, **{name: value}) as process:
-        assert process.wait() == 2
-        assert process.error == f'rigid_sim_node: {expected}\n'
+def test_bad_parameter_is_one_line_and_exit_code_2(capfd, name, value, expected):
+    code, out, error = run_here(capfd, '--ros-args', '-p', f'{name}:={value}')
+    assert (code, out, error) == (2, '', f'rigid_sim_node: {expected}\n')
 
 
-def test_bad_ros_arguments_are_one_line_and_exit_code_2(tmp_path):
-    for number, (arguments, word) in enumerate([
-            (['--ros-args', '-p', 'nonsense'], 'nonsense'),
-            (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml'),
-            (['ten_cubes'], 'ten_cubes')]):
-        with NodeProcess(tmp_path / str(number), arguments) as process:
-            assert process.wait() == 2
-            assert word in process.error
-            assert len(process.error.splitlines()) == 1, process.error
+@pytest.mark.parametrize('arguments, word', [
+    (['--ros-args', '-p', 'nonsense'], 'nonsense'),
+    (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml'),
+    (['ten_cubes'], 'ten_cubes')])
+def test_bad_arguments_are_one_line_and_exit_code_2(capfd, arguments, word):
+    code, out, error = run_here(capfd, *arguments)
+    assert (code, out) == (2, '')
+    assert word in error
+    assert len(error.splitlines()) == 1, error
 
 
 def test_unknown_parameter_is_warned_of(tmp_path):
@@ -132,10 +144,9 @@ def test_unknown_parameter_is_warned_of(tmp_path):
         assert process.stop()[0] == 0
 
 
-def test_help_lists_every_parameter(tmp_path):
-    with NodeProcess(tmp_path, ['--help']) as process:
-        assert process.wait() == 0
-        assert process.output.startswith('usage: rigid_sim_node')
-        for row in PARAMETERS:
-            assert f'  {row.name} = ' in process.output
-        assert process.error == ''
+def test_help_lists_every_parameter(capfd):
+    code, out, error = run_here(capfd, '--help')
+    assert (code, error) == (0, '')
+    assert out.startswith('usage: rigid_sim_node')
+    for row in PARAMETERS:
+        assert f'  {row.name} = ' in out
