@@ -73,6 +73,7 @@ setup(
         'ros': ROS_WHEELS,
         # pybullet has no wheels for later Pythons, and takes a quarter of an hour to build.
         'peers': ['mujoco', 'rapier3d', 'pybullet; python_version < "3.12"'],
+        'benchmark': ['matplotlib', 'mpmath'],
         'view': ['matplotlib', 'pillow>=10.1'],
         'test': ['pytest>=7.4', 'hypothesis', 'scipy', 'mpmath', 'rosbags', 'mcap-ros2-support',
                  'catkin_pkg', *LINTERS],
@@ -86,6 +87,7 @@ setup(
             'rigid_sim_replay = rigid_sim_ros.bag_tools.replay:main',
             'rigid_sim_player = rigid_sim_ros.nodes.player:main',
             'rigid_sim_view = rigid_sim_ros.view.command_line:main',
+            'rigid_sim_benchmark = rigid_sim_ros.benchmark.main:main',
         ],
     },
 )

@@ -36,7 +36,8 @@ COLUMNS = 3
 PANEL = 3.4, 2.7
 """Width and height of a panel [inch]."""
 
-SCALED = {'drift_': 'drifting, spinning, never touching', 'pile_': 'dropped from a jittered grid'}
+SCALED = {'drift_': 'drifting, spinning, never touching',
+          'pile_': 'dropped from a jittered grid', 'heap_': 'dropped tumbled'}
 """Problems that come in sizes: how their names begin, and the panel's title."""
 
 

@@ -105,9 +105,11 @@ def tumble_reference(times):
     from rigid_sim_ros.benchmark.references.bouncing import BouncingCube
     flight = BouncingCube(edge=EDGE, mass=1.0, gravity=GRAVITY, restitution=1.0, **TUMBLE)
     poses = []
+    impact, _ = flight.next_impact()
     for time in times:
-        while flight.next_impact()[0] < time:
+        while impact < time:
             flight.bounce()
+            impact, _ = flight.next_impact()
         poses.append(flight.pose_at(time))
     return tuple(np.array(part) for part in zip(*poses))
 

@@ -60,6 +60,18 @@ def pile_scene(count):
     return scene([cube('cube', (0.0, 0.0, 0.4), edge=EDGE, repeat=block)])
 
 
+def heap_scene(count):
+    """Return cubes in random attitudes, too far apart to touch, above the ground."""
+    random = np.random.default_rng(1)
+    bodies = []
+    for number, cell in enumerate(np.ndindex(BLOCKS[count])):
+        orientation = random.normal(size=4)
+        place = np.array(cell) * 0.36 + random.uniform(-0.005, 0.005, 3) + (0.0, 0.0, 0.5)
+        bodies.append(cube(f'cube_{number}', place.tolist(),
+                           orientation=(orientation / np.linalg.norm(orientation)).tolist()))
+    return scene(bodies)
+
+
 def rest_scene(count):
     """Return cubes at rest on the ground, apart."""
     side = int(np.ceil(np.sqrt(count)))
@@ -96,6 +108,8 @@ PROBLEMS = (
     _crowd('tower_10', 'a tower of ten cubes, 10 s', tower_scene, 10, 10, still=True),
     *(_crowd(f'pile_{count}', f'{count} cubes dropped from a jittered grid, 4 s',
              lambda count=count: pile_scene(count), 4, count) for count in BLOCKS),
+    *(_crowd(f'heap_{count}', f'{count} tumbled cubes dropped, 4 s',
+             lambda count=count: heap_scene(count), 4, count) for count in BLOCKS),
     _crowd('rest_1000', '1000 cubes at rest, apart, 4 s, free to sleep',
            lambda: rest_scene(1000), 4, 1000, still=True, may_sleep=True),
 )

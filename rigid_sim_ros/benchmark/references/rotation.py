@@ -15,9 +15,9 @@
 """
 The attitude of a turning rigid body to 30 digits and more.
 
-Taylor series of the quaternion q, the angular momentum m and the torque g, both in body axes,
+Taylor series of the quaternion q, the rate w and the torque g, both in body axes,
 
-    q' = q w / 2,    m' = m x w + g,    g' = g x w,    w = m / I,
+    q' = q w / 2,    w1' = ((I2 - I3) w2 w3 + g1) / I1 and so on,    g' = g x w,
 
 for a torque that is constant in world axes. Numbers are integers, scaled by 2^128: Python's
 integers are exact and several times faster than a multiple-precision library, and nothing
@@ -27,14 +27,14 @@ torque, near unstable axes too, where double precision loses eight digits.
 
 from fractions import Fraction
 from functools import lru_cache
-from math import ceil, hypot
+from math import ceil, hypot, sqrt
 from operator import mul
 
 SCALE_BITS = 128
 ONE = 1 << SCALE_BITS
 
-TERMS = 36
-"""Of the series: with 36 terms, 50 terms and half the stride agree to 1e-28."""
+TERMS = 28
+"""Of the series: 50 terms and half the stride give the same to 1e-27 after 10 s of tumbling."""
 
 STRIDE_ANGLE = 0.75
 """Largest turn [rad] in a stride, at a bound of the rate that motion can reach."""
@@ -49,10 +49,12 @@ def attitudes(inertia, rate, times, torque=(0.0, 0.0, 0.0)):
     in body and in world axes; the torque [N m] is in world axes. All arguments are tuples of
     floats (or of `Fraction`s, as torque / inertia might not be a float), taken exactly.
     """
-    inverse = tuple(_fixed(1 / Fraction(moment)) for moment in inertia)
-    momentum = [_fixed(Fraction(moment) * Fraction(component))
-                for moment, component in zip(inertia, rate)]
-    state = [ONE, 0, 0, 0], momentum, [_fixed(Fraction(component)) for component in torque]
+    moments = [Fraction(moment) for moment in inertia]
+    inverse = [_fixed(1 / moment) for moment in moments]
+    coupling = [_fixed((moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i])
+                for i in range(3)]
+    state = ([ONE, 0, 0, 0], [_fixed(Fraction(component)) for component in rate],
+             [_fixed(Fraction(component)) for component in torque])
     result = []
     now = Fraction(0)
     for time in times:
@@ -60,7 +62,7 @@ def attitudes(inertia, rate, times, torque=(0.0, 0.0, 0.0)):
         count = max(1, ceil(float(span) * _largest_rate(inertia, rate, torque, time)
                             / STRIDE_ANGLE))
         for _ in range(count):
-            state = _stride(state, inverse, _fixed(span / count), any(torque))
+            state = _stride(state, inverse, coupling, _fixed(span / count), any(torque))
         now = Fraction(time)
         w, x, y, z = (component / ONE for component in state[0])
         result.append((x, y, z, w))
@@ -73,9 +75,12 @@ def _fixed(value):
 
 
 def _largest_rate(inertia, rate, torque, time):
-    """Return a bound [rad/s] of the rate up to a time [s]: |L0| + |torque| t over the least I."""
-    momentum = hypot(*(float(i) * float(w) for i, w in zip(inertia, rate)))
-    return (momentum + hypot(*map(float, torque)) * float(time)) / float(min(inertia))
+    """Return a bound [rad/s] of the rate up to a time [s], from energy or from |L0| + |g| t."""
+    moments, rates = list(map(float, inertia)), list(map(float, rate))
+    if not any(torque):
+        return sqrt(sum(i * w * w for i, w in zip(moments, rates)) / min(moments))
+    momentum = hypot(*(i * w for i, w in zip(moments, rates)))
+    return (momentum + hypot(*map(float, torque)) * float(time)) / min(moments)
 
 
 def _product(a, b):
@@ -83,28 +88,20 @@ def _product(a, b):
     return sum(map(mul, a, reversed(b))) >> SCALE_BITS
 
 
-def _stride(state, inverse, span, with_torque):
+def _stride(state, inverse, coupling, span, with_torque):
     """Return the state one stride later; the span is its length, scaled."""
-    q = [[value] for value in state[0]]
-    m = [[value] for value in state[1]]
-    g = [[value] for value in state[2]]
-    w = [[value * factor >> SCALE_BITS] for (value,), factor in zip(m, inverse)]
+    q, w, g = ([[value] for value in part] for part in state)
     for k in range(TERMS):
-        def append(series, derivative):
-            series.append((derivative * span >> SCALE_BITS) // (k + 1))
-
-        q_rates = _quaternion_rates(q, w)
-        m_rates = _cross(m, w)
+        w_rates = [_product(w[(i + 1) % 3], w[(i + 2) % 3]) * coupling[i] >> SCALE_BITS
+                   for i in range(3)]
+        rates = [*zip(q, _quaternion_rates(q, w))]
         if with_torque:
-            m_rates = [value + torque[-1] for value, torque in zip(m_rates, g)]
-            for series, value in zip(g, _cross(g, w)):
-                append(series, value)
-        for series, value in zip(q, q_rates):
-            append(series, value)
-        for series, rate, value, factor in zip(m, w, m_rates, inverse):
-            append(series, value)
-            rate.append(series[-1] * factor >> SCALE_BITS)
-    return tuple([sum(series) for series in part] for part in (q, m, g))
+            w_rates = [value + (torque[-1] * factor >> SCALE_BITS)
+                       for value, torque, factor in zip(w_rates, g, inverse)]
+            rates += zip(g, _cross(g, w))
+        for series, value in (*rates, *zip(w, w_rates)):
+            series.append((value * span >> SCALE_BITS) // (k + 1))
+    return tuple([sum(series) for series in part] for part in (q, w, g))
 
 
 def _cross(a, w):
