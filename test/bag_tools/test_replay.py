@@ -24,7 +24,7 @@ from rigid_sim_ros.bag_tools import info, recover, replay
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.nodes.command_readers import READERS
 from rigid_sim_ros.nodes.session import Session
-from rigid_sim_ros.recording import Recorder
+from rigid_sim_ros.recording import Bag, read, Recorder
 from rigid_sim_ros.recording.journal import encode_parameters, encode_reset
 from rigid_sim_ros.scene import dump_scene, load_scene
 
@@ -130,6 +130,31 @@ def test_bouncing_with_the_baseline_method_is_identical_collisions_too(tmp_path,
     assert replay.main([str(tmp_path / 'bag')]) == 0
     assert info.main([str(tmp_path / 'bag')]) == 0
     assert 'ball, ground' in capsys.readouterr().out
+
+
+CROWD = """
+gravity: [0, 0, 0]
+material: {restitution: 1.0, friction: 0.0}
+bodies:
+""" + ''.join(
+    f'  - {{name: ball_{row}_{column}, sphere: {{radius: 0.1}}, mass: 1.0, '
+    f'position: [{0.5 * row}, {0.5 * column}, 0], velocity: [{1 - row}, {1 - column}, 0]}}\n'
+    for row in range(3) for column in range(3))
+
+
+def test_impacts_of_the_exact_method_are_identical_and_two_runs_are_the_same_bytes(
+        tmp_path, capsys):
+    for name in ('a', 'b'):
+        with Recorded(tmp_path / name, CROWD) as run:
+            run.advance(30)
+            run.command('~/cmd_vel', 'ball_1_1', 0.1, 0.2, 0.3, 4, 5, 6)
+            run.advance(70)
+        assert replay.main([str(tmp_path / name)]) == 0
+    assert capsys.readouterr().out.count('identical') == 2
+    a, b = ([(topic, time, bytes(data)) for topic, time, data in Bag(tmp_path / name).messages()]
+            for name in ('a', 'b'))
+    assert a == b
+    assert len(read(tmp_path / 'a').collisions) >= 4
 
 
 def test_a_command_that_was_not_recorded_shows_as_the_first_difference(tmp_path, capsys):
