@@ -124,6 +124,16 @@ class DrivenRotations:
         if len(places):
             out[:, places] = self._law.rates(ARRAYS, table, time, fraction)
 
+    def write_motions(self, times, indices, orientation, rate):
+        """
+        Write quaternions (4, k) and world rates (3, k) of bodies (k,) at their own times.
+
+        One by one: a body may be listed at several times, in different strides.
+        """
+        for place in self._table.select(indices)[0].tolist():
+            orientation[:, place], rate[:, place] = self.motion_of_one(
+                int(indices[place]), times.item(place))
+
     def write_rate_bounds(self, indices, start, end, out):
         """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
         self._write_bounds(self._law.rate_bound, indices, start, end, out)

@@ -18,12 +18,12 @@ import numpy as np
 
 from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
 from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
-from rigid_sim_ros.engine.flight.fixed_axis import (
-    BLOCK, fixed_axes, fixed_axis, FixedAxisRotations)
+from rigid_sim_ros.engine.flight.fixed_axis import BLOCK, FixedAxisRotations
 from rigid_sim_ros.engine.flight.free_rotation import FreeRotations
 from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
 from rigid_sim_ros.engine.flight.plain_rotation import normalized
 from rigid_sim_ros.engine.flight.recycled_arrays import RecycledArrays
+from rigid_sim_ros.engine.flight.staying_axes import staying_axes, staying_axis
 from rigid_sim_ros.engine.flight.translations import Translations
 
 FIXED_AXIS, FREE, DRIVEN_EQUAL, DRIVEN_UNEQUAL = range(4)
@@ -84,7 +84,7 @@ class Flights:
         self._translations.begin(indices, time, position, linear_velocity, acceleration)
         moments = self._inertia[:, indices]
         quaternion = np.stack(normalized(ARRAYS, orientation))
-        axis, speed, growth, stays = fixed_axes(moments, quaternion, angular_velocity, torque)
+        axis, speed, growth, stays = staying_axes(moments, quaternion, angular_velocity, torque)
         self._fixed_axis.begin(indices, quaternion, angular_velocity, axis,
                                np.where(stays, speed, 0.0), np.where(stays, growth, 0.0))
         equal = (moments[0] == moments[1]) & (moments[0] == moments[2])
@@ -158,7 +158,7 @@ class Flights:
         Return the motions of bodies (k,), each at a time of its own (k,) [s], world axes.
 
         Positions (3, k) [m], unit quaternions (4, k), velocities (3, k) [m/s] and rates (3, k)
-        [rad/s]. Bodies that do not turn about a fixed axis are evaluated one by one.
+        [rad/s]. Bodies under torque are evaluated one by one.
         """
         elapsed = times - self._translations.start[indices]
         position = np.empty((3, len(elapsed)))
@@ -166,10 +166,8 @@ class Flights:
         self._translations.positions(elapsed, indices, position)
         self._fixed_axis.orientations(elapsed, indices, orientation)
         rate = self._fixed_axis.rates(elapsed, indices)
-        for place in np.flatnonzero(self._kind[indices] != FIXED_AXIS).tolist():
-            body = int(indices[place])
-            orientation[:, place], rate[:, place] = self._others[
-                self._kind.item(body)].motion_of_one(body, times.item(place))
+        for rotations in self._present():
+            rotations.write_motions(times, indices, orientation, rate)
         return position, orientation, self._translations.velocities(elapsed, indices), rate
 
     def rate_bound(self, indices, start, end):
@@ -215,7 +213,7 @@ class Flights:
         self._translations.begin_one(body, time, position, velocity, acceleration)
         moments = self._moments[body]
         quaternion = normalized(FLOATS, orientation)
-        motion = fixed_axis(moments, quaternion, rate, torque)
+        motion = staying_axis(moments, quaternion, rate, torque)
         if motion:
             kind = FIXED_AXIS
         elif not any(torque):

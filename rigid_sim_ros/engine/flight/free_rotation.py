@@ -19,22 +19,24 @@ A body's constants fill one column of a table, so that many bodies are evaluated
 body in plain floats, or one body at many times, by the same lines.
 """
 
+from math import cos, sin, sqrt
+
 import numpy as np
 
 from rigid_sim_ros.engine.flight import hyperbolic, trigonometric
 from rigid_sim_ros.engine.flight.fixed_axis import ROUNDING
-from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
+from rigid_sim_ros.engine.flight.functions import ARRAYS, cosine_and_sine, FLOATS
 from rigid_sim_ros.engine.flight.packed_columns import PackedColumns
 from rigid_sim_ros.engine.flight.plain_rotation import (
-    normalized, product, to_body, to_world)
+    normalized, product, to_body, to_unit_length, to_world)
 from rigid_sim_ros.engine.flight.polhode import polhode_of_many, polhode_of_one
 
 START, RATE, RATE_BOUND, DERIVATIVE_BOUND, WORLD, BODY_RATE, MOTION = (
     0, slice(1, 4), 4, 5, slice(6, 22), slice(22, 31), slice(31, None))
 """
 Rows of a table: start [s]; world rate there [rad/s]; bounds of |w| and |dw/dt|; the matrix (4, 4)
-from a pair's four parts to the quaternion; that (3, 3) from the unit momentum to the body rate;
-constants of the form.
+from the parts of a pair, Re a, Im a, Re b, Im b, to the quaternion; that (3, 3) from the unit
+momentum to the body rate; constants of the form.
 """
 
 LEADING = 31
@@ -68,7 +70,10 @@ class FreeRotations:
             new, old = old, new
         form, table = new
         old[1].remove(body)
-        table.put_one(body, _column(FLOATS, form, polhode, time, quaternion, rate))
+        constants = form.rows(FLOATS, polhode)
+        first = _unit_pair(*form.pair(constants, 0.0))
+        leading = _leading(FLOATS, polhode, first, time, quaternion, rate)
+        table.put_one(body, leading + constants)
 
     def begin(self, bodies, time, moments, quaternion, rate, torque):
         """Start rotations of bodies (k,); arrays (3, k), (4, k); no torque."""
@@ -83,9 +88,13 @@ class FreeRotations:
             for body in bodies[~chosen].tolist():
                 table.remove(body)
             if chosen.any():
-                columns = _column(ARRAYS, form, polhode.chosen(chosen), time,
-                                  quaternion[:, chosen], rate[:, chosen])
-                table.put(bodies[chosen], np.array(np.broadcast_arrays(*columns)))
+                here = polhode.chosen(chosen)
+                constants = np.array(np.broadcast_arrays(*form.rows(ARRAYS, here)))
+                first = _unit_pairs(*form.pairs(constants, 0.0))
+                leading = _leading(ARRAYS, here, first, time, quaternion[:, chosen],
+                                   rate[:, chosen])
+                table.put(bodies[chosen], np.vstack((
+                    np.array(np.broadcast_arrays(*leading)), constants)))
 
     def remove(self, body):
         """Forget a body."""
@@ -95,19 +104,19 @@ class FreeRotations:
     def write_orientations(self, time, indices, out):
         """Write the quaternions of those of `indices` (k,) that are here to `out` (4, k)."""
         for form, places, columns in self._selected(indices):
-            pair = _unit_pair(ARRAYS, form.pair(ARRAYS, columns[MOTION], time - columns[START]))
-            out[:, places] = _orientations(columns, pair)
+            pairs = _unit_pairs(*form.pairs(columns[MOTION], time - columns[START]))
+            out[:, places] = _orientations(columns[WORLD], pairs)
 
     def write_rates(self, time, indices, out):
         """Write the world rates of those of `indices` (k,) that are here to `out` (3, k)."""
         for form, places, columns in self._selected(indices):
-            elapsed = time - columns[START]
-            pair = _unit_pair(ARRAYS, form.pair(ARRAYS, columns[MOTION], elapsed))
-            matrix = columns[BODY_RATE].reshape(3, 3, -1)
-            body_rate = (matrix * np.array(_momentum(pair))).sum(axis=1)
-            # at the start, as given: momentum to rate loses digits in very thin bodies
-            out[:, places] = np.where(elapsed == 0, columns[RATE],
-                                      to_world(_orientations(columns, pair), body_rate))
+            out[:, places] = _motions(form, columns, time - columns[START])[1]
+
+    def write_motions(self, times, indices, orientation, rate):
+        """Write quaternions (4, k) and world rates (3, k) of bodies (k,) at their own times."""
+        for form, places, columns in self._selected(indices):
+            orientation[:, places], rate[:, places] = _motions(
+                form, columns, times[places] - columns[START])
 
     def write_rate_bounds(self, indices, start, end, out):
         """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
@@ -124,20 +133,25 @@ class FreeRotations:
         form, table = self._form_of(body)
         column = table.column(body)
         elapsed = time - column[START]
-        pair = _unit_pair(FLOATS, form.pair(FLOATS, column[MOTION], elapsed))
-        x, y, z, w = _applied(column[WORLD], pair)
-        scale = 1.5 - 0.5 * (x * x + y * y + z * z + w * w)
-        quaternion = x * scale, y * scale, z * scale, w * scale
+        w, z, x, y = _unit_pair(*form.pair(column[MOTION], elapsed))
+        a, b, c, d, e, f, g, h, i, j, k, m, n, o, p, q = column[WORLD]
+        quaternion = to_unit_length((
+            a * w + b * z + c * x + d * y, e * w + f * z + g * x + h * y,
+            i * w + j * z + k * x + m * y, n * w + o * z + p * x + q * y))
         if elapsed == 0:
             return quaternion, tuple(column[RATE])
-        return quaternion, to_world(quaternion, _applied(column[BODY_RATE], _momentum(pair)))
+        first, second, third = _momentum(w, z, x, y)
+        a, b, c, d, e, f, g, h, i = column[BODY_RATE]
+        return quaternion, to_world(quaternion, (
+            a * first + b * second + c * third, d * first + e * second + f * third,
+            g * first + h * second + i * third))
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""
         form, table = self._form_of(body)
-        column = table.column(body)
-        pair = form.pair(ARRAYS, column[MOTION], times - column[START])
-        return _orientations(np.array(column)[:, None], _unit_pair(ARRAYS, pair))
+        column = np.array(table.column(body))[:, None]
+        pairs = _unit_pairs(*form.pairs(column[MOTION], times - column[START]))
+        return to_unit_length(column[WORLD].reshape(4, 4) @ pairs)
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -154,50 +168,61 @@ class FreeRotations:
                     yield form, places, columns
 
 
-def _column(functions, form, polhode, time, quaternion, rate):
-    """Return all constants of a rotation, a list of floats or of arrays (k,)."""
-    constants = form.rows(functions, polhode)
-    w, x, y, z = _unit_pair(functions, form.pair(functions, constants, 0.0 * rate[0]))
+def _leading(functions, polhode, first, time, quaternion, rate):
+    """Return the rows before those of the form, a list of floats or arrays (k,)."""
+    w, z, x, y = first
     # the frame of the momentum is so placed that the start is exact
     world = normalized(functions, product(product(quaternion, polhode.axes), (-x, -y, -z, w)))
     p, q, r, s = polhode.axes
     columns = [product(product(world, unit), (-p, -q, -r, s)) for unit in UNITS]
     return [time, *rate, *(bound * ROUNDING for bound in polhode.rate_bounds(functions)),
             *(column[row] for row in range(4) for column in columns),
-            *polhode.body_rates(functions), *constants]
+            *polhode.body_rates(functions)]
 
 
-UNITS = ((0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
-"""The quaternions w, x, y, z: the order of a pair's parts, see `_unit_pair`."""
+UNITS = ((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 0.0), (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
+"""The quaternions w, z, x, y: the order of a pair's parts Re a, Im a, Re b, Im b."""
 
 
-def _unit_pair(functions, pair):
-    """Return w, x, y, z = Re a, Re b, Im b, Im a of a pair turned by its phase, unit length."""
-    a, b, c, d, phase = pair
-    scale = 1 / functions.sqrt(a * a + b * b + c * c + d * d)
-    cosine, sine = functions.cos(phase) * scale, functions.sin(phase) * scale
-    return (a * cosine - b * sine, c * cosine - d * sine, c * sine + d * cosine,
-            a * sine + b * cosine)
+def _unit_pair(a, b, c, d, phase):
+    """Return the parts of a pair turned by its phase, at unit length, in plain floats."""
+    scale = 1 / sqrt(a * a + b * b + c * c + d * d)
+    cosine, sine = cos(phase) * scale, sin(phase) * scale
+    return (a * cosine - b * sine, a * sine + b * cosine,
+            c * cosine - d * sine, c * sine + d * cosine)
 
 
-def _momentum(pair):
+def _unit_pairs(parts, phase):
+    """Return the parts (4, k) of pairs turned by their phases (k,), at unit length."""
+    waves = np.empty((2, len(phase)))
+    cosine_and_sine(phase, waves)
+    waves /= np.sqrt((parts * parts).sum(axis=0))
+    turned = parts.take(SWAPPED, axis=0)
+    turned *= waves[1]
+    turned[0::2] *= -1.0
+    parts *= waves[0]
+    turned += parts
+    return turned
+
+
+SWAPPED = (1, 0, 3, 2)
+"""Imaginary parts before real ones."""
+
+
+def _momentum(w, z, x, y):
     """Return the unit momentum along axes 1, 2, 3: the Hopf map, where the phase drops out."""
-    w, x, y, z = pair
     return 2 * (x * z - w * y), 2 * (w * x + y * z), w * w + z * z - x * x - y * y
 
 
-def _orientations(columns, pair):
-    """Return the quaternions, (4, k), of pairs of arrays (k,)."""
-    matrix = columns[WORLD].reshape(4, 4, -1)
-    w, x, y, z = pair
-    quaternion = matrix[:, 0] * w + matrix[:, 1] * x + matrix[:, 2] * y + matrix[:, 3] * z
-    # the matrix is orthogonal to rounding only; one Newton step for 1 / length
-    quaternion *= 1.5 - 0.5 * (quaternion * quaternion).sum(axis=0)
-    return quaternion
+def _orientations(matrices, pairs):
+    """Return quaternions (4, k) from matrices (16, k) and the parts of pairs (4, k)."""
+    return to_unit_length((matrices.reshape(4, 4, -1) * pairs).sum(axis=1))
 
 
-def _applied(matrix, vector):
-    """Return a matrix, given as one list of rows, times a vector, in plain floats."""
-    width = len(vector)
-    return tuple(sum(matrix[start + column] * vector[column] for column in range(width))
-                 for start in range(0, len(matrix), width))
+def _motions(form, columns, elapsed):
+    """Return quaternions (4, k) and world rates (3, k) so long (k,) after the starts."""
+    pairs = _unit_pairs(*form.pairs(columns[MOTION], elapsed))
+    quaternion = _orientations(columns[WORLD], pairs)
+    rate = (columns[BODY_RATE].reshape(3, 3, -1) * np.array(_momentum(*pairs))).sum(axis=1)
+    # at the start, as given: momentum to rate loses digits in very thin bodies
+    return quaternion, np.where(elapsed == 0, columns[RATE], to_world(quaternion, rate))

@@ -25,10 +25,13 @@ d_n = p_n sin (2n+1) zeta and a constant zeta, n from 0 to 3,
     b = sign (-1)^j sum (-1)^n [c_n sinh (2n+1)x - i sign d_n cosh (2n+1)x].
 """
 
-from math import pi
+from math import cosh, pi, sinh
+
+import numpy as np
 
 from rigid_sim_ros.engine.flight.elliptic import complementary_nome, quarter_period
-from rigid_sim_ros.engine.flight.multiple_angles import combined, cubic, ODD_COSINE, ODD_SINE
+from rigid_sim_ros.engine.flight.multiple_angles import (
+    combined, cubics, interleaved, ODD_COSINE, ODD_SINE)
 
 ROW_COUNT = 24
 """See `rows`."""
@@ -44,7 +47,8 @@ def rows(functions, polhode):
     Return the constants of the motion, a list of `ROW_COUNT` floats or arrays.
 
     u at the start, du/dt, 1 / (2 K) and 2 K (0 and 0 where K is infinite), pi / (4 K'), twist
-    rate, twist a unit of u within its half period, sign at the start, then the polynomials.
+    rate, twist a unit of u within its half period, sign at the start, then four interleaved
+    cubics, see `pair`.
     """
     sign = polhode.sign
     q = complementary_nome(functions, polhode.square, polhode.complementary)
@@ -62,28 +66,51 @@ def rows(functions, polhode):
         functions.where(polhode.backward, -polhode.phase, polhode.phase), polhode.speed,
         per_period, period, scale, turn, twist,
         functions.where(polhode.backward, -sign, sign),
-        *combined(ODD_COSINE, c),
-        *combined(ODD_SINE, [-sign * one for one in d]),
-        *combined(ODD_SINE, [c[0], -c[1], c[2], -c[3]]),
-        *combined(ODD_COSINE, [-sign * d[0], sign * d[1], -sign * d[2], sign * d[3]])]
+        *interleaved(
+            combined(ODD_COSINE, c),
+            combined(ODD_SINE, [-sign * one for one in d]),
+            combined(ODD_SINE, [c[0], -c[1], c[2], -c[3]]),
+            combined(ODD_COSINE, [-sign * d[0], sign * d[1], -sign * d[2], sign * d[3]]))]
 
 
-def pair(functions, rows, elapsed):
+def pair(rows, elapsed):
     """
-    Return (Re a, Im a, Re b, Im b, phase) at times since the start; the phase applies to both.
+    Return (Re a, Im a, Re b, Im b, phase) of one body in plain floats.
 
-    The pair is not of unit length.
+    The phase [rad] applies to both a and b; their length is any.
     """
-    u = rows[0] + rows[1] * elapsed
-    half_period = functions.nearest(u * rows[2])
-    u = u - half_period * rows[3]
-    x = functions.minimum(functions.maximum(u * rows[4], -FARTHEST), FARTHEST)
-    sine, cosine = functions.sinh(x), functions.cosh(x)
+    (start, speed, per_period, period, scale, turn, twist, sign, p0, q0, r0, t0, p1, q1, r1, t1,
+     p2, q2, r2, t2, p3, q3, r3, t3) = rows
+    u = start + speed * elapsed
+    half_period = round(u * per_period)
+    u -= half_period * period
+    x = min(max(u * scale, -FARTHEST), FARTHEST)
+    sine, cosine = sinh(x), cosh(x)
     s = sine * sine
+    if half_period % 2:
+        sign = -sign
+    return (cosine * (p0 + s * (p1 + s * (p2 + s * p3))),
+            sine * (q0 + s * (q1 + s * (q2 + s * q3))),
+            sign * sine * (r0 + s * (r1 + s * (r2 + s * r3))),
+            sign * cosine * (t0 + s * (t1 + s * (t2 + s * t3))), turn * elapsed + twist * u)
+
+
+def pairs(rows, elapsed):
+    """Return the parts as `pair` does, (4, k), and the phases (k,), of many bodies or times."""
+    u = rows[0] + rows[1] * elapsed
+    half_period = np.rint(u * rows[2])
+    u -= half_period * rows[3]
+    x = np.clip(u * rows[4], -FARTHEST, FARTHEST)
+    sine, cosine = np.sinh(x), np.cosh(x)
     sign = rows[7] * (1 - 2 * (half_period % 2))
-    return (cosine * cubic(rows[8:12], s), sine * cubic(rows[12:16], s),
-            sign * sine * cubic(rows[16:20], s), sign * cosine * cubic(rows[20:24], s),
-            rows[5] * elapsed + rows[6] * u)
+    parts = cubics(rows[8:], sine * sine)
+    parts[0] *= cosine
+    parts[1] *= sine
+    sine *= sign
+    cosine *= sign
+    parts[2] *= sine
+    parts[3] *= cosine
+    return parts, rows[5] * elapsed + rows[6] * u
 
 
 def _angle(functions, q, ratio):

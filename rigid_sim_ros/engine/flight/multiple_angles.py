@@ -34,11 +34,22 @@ ODD_SINE = ((1,), (3, 4), (5, 20, 16), (7, 56, 112, 64))
 
 
 def combined(table, weights):
-    """Return the polynomial, lowest order first, of the weighted sum of a table's rows."""
+    """Return the cubic, lowest order first, of the weighted sum of a table's rows."""
     return [sum(row[order] * weight for row, weight in zip(table, weights) if order < len(row))
-            for order in range(len(table[-1]))]
+            for order in range(4)]
 
 
-def cubic(p, s):
-    """Return the value of a polynomial of degree 3, lowest order first."""
-    return p[0] + s * (p[1] + s * (p[2] + s * p[3]))
+def interleaved(*polynomials):
+    """Return coefficients in one list, those of order 0 first, as `cubics` wants them."""
+    return [coefficient for order in zip(*polynomials) for coefficient in order]
+
+
+def cubics(coefficients, s):
+    """Return the values (4, k) at s (k,) of four cubics a column, interleaved (16, k)."""
+    value = coefficients[12:] * s
+    value += coefficients[8:12]
+    value *= s
+    value += coefficients[4:8]
+    value *= s
+    value += coefficients[:4]
+    return value

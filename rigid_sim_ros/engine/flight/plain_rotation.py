@@ -53,3 +53,16 @@ def normalized(functions, quaternion):
     x, y, z, w = quaternion
     scale = 1 / functions.sqrt(x * x + y * y + z * z + w * w)
     return x * scale, y * scale, z * scale, w * scale
+
+
+def to_unit_length(quaternion):
+    """
+    Return a quaternion of nearly unit length at unit length, a tuple or an array as given.
+
+    One Newton step for 1 / length, right to rounding up to departures of 1e-8.
+    """
+    x, y, z, w = quaternion
+    scale = 1.5 - 0.5 * (x * x + y * y + z * z + w * w)
+    if isinstance(quaternion, tuple):
+        return x * scale, y * scale, z * scale, w * scale
+    return quaternion * scale

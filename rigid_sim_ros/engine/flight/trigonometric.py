@@ -38,14 +38,17 @@ With g = s^(1/2) e^eta and v = s / g the series (DLMF 20.2) are, n from 0 or 1 t
     P_n = s^(2n^2 - n) g^2n,    B_n = s^(2n^2 + n) g^(2n + 1),    R_n, C_n the same with v.
 """
 
-from math import pi
+from math import cos, pi, sin
+
+import numpy as np
 
 from rigid_sim_ros.engine.flight.elliptic import nome, quarter_period
+from rigid_sim_ros.engine.flight.functions import cosine_and_sine
 from rigid_sim_ros.engine.flight.multiple_angles import (
-    combined, cubic, EVEN_COSINE, EVEN_SINE, ODD_COSINE, ODD_SINE)
+    combined, cubics, EVEN_COSINE, EVEN_SINE, interleaved, ODD_COSINE, ODD_SINE)
 
-ROW_COUNT = 18
-"""Angle at the start, its rate, twist rate, then the polynomials of `pair`."""
+ROW_COUNT = 19
+"""Angle at the start, its rate, twist rate, then four interleaved cubics, see `pair`."""
 
 SMALLEST_FACTOR = 1e-100
 """What g is at least: spin exactly about the axis of a symmetric top has g = 0."""
@@ -76,26 +79,43 @@ def rows(functions, polhode):
     even = [-(p[0] + r[0]), p[1] + r[1], -(p[2] + r[2])]
     return [
         pi / (2 * period) * start, rate, turn,
-        *combined(EVEN_COSINE, [1.0, *even]),
-        *combined(EVEN_SINE, [-sign * (p[0] - r[0]), sign * (p[1] - r[1]),
-                              -sign * (p[2] - r[2])]),
-        *combined(ODD_SINE, [sign * (b[0] + c[0]), -sign * (b[1] + c[1]),
-                             sign * (b[2] + c[2]), -sign * (b[3] + c[3])]),
-        *combined(ODD_COSINE, [c[0] - b[0], b[1] - c[1], c[2] - b[2], b[3] - c[3]])]
+        *interleaved(
+            combined(EVEN_COSINE, [1.0, *even]),
+            combined(EVEN_SINE, [-sign * (p[0] - r[0]), sign * (p[1] - r[1]),
+                                 -sign * (p[2] - r[2])]),
+            combined(ODD_SINE, [sign * (b[0] + c[0]), -sign * (b[1] + c[1]),
+                                sign * (b[2] + c[2]), -sign * (b[3] + c[3])]),
+            combined(ODD_COSINE, [c[0] - b[0], b[1] - c[1], c[2] - b[2], b[3] - c[3]]))]
 
 
-def pair(functions, rows, elapsed):
+def pair(rows, elapsed):
     """
-    Return (Re a, Im a, Re b, Im b, phase) at times since the start; the phase applies to both.
+    Return (Re a, Im a, Re b, Im b, phase) of one body in plain floats.
 
-    The pair is not of unit length.
+    The phase [rad] applies to both a and b; their length is any.
     """
-    zeta = rows[0] + rows[1] * elapsed
-    sine, cosine = functions.sin(zeta), functions.cos(zeta)
+    (start, rate, turn, p0, q0, r0, t0, p1, q1, r1, t1, p2, q2, r2, t2,
+     p3, _, r3, t3) = rows
+    zeta = start + rate * elapsed
+    sine, cosine = sin(zeta), cos(zeta)
     s = -sine * sine
-    imaginary = rows[7] + s * (rows[8] + s * rows[9])
-    return (cubic(rows[3:7], s), sine * cosine * imaginary, sine * cubic(rows[10:14], s),
-            cosine * cubic(rows[14:18], s), rows[2] * elapsed)
+    return (p0 + s * (p1 + s * (p2 + s * p3)), sine * cosine * (q0 + s * (q1 + s * q2)),
+            sine * (r0 + s * (r1 + s * (r2 + s * r3))),
+            cosine * (t0 + s * (t1 + s * (t2 + s * t3))), turn * elapsed)
+
+
+def pairs(rows, elapsed):
+    """Return the parts as `pair` does, (4, k), and the phases (k,), of many bodies or times."""
+    zeta = rows[0] + rows[1] * elapsed
+    waves = np.empty((2,) + zeta.shape)
+    cosine, sine = waves
+    cosine_and_sine(zeta, waves)
+    parts = cubics(rows[3:], -sine * sine)
+    parts[2] *= sine
+    sine *= cosine
+    parts[1] *= sine
+    parts[3] *= cosine
+    return parts, rows[2] * elapsed
 
 
 def _factor(functions, s, ratio):

@@ -20,7 +20,8 @@ import numpy as np
 import pytest
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.flight import Flights
-from rigid_sim_ros.engine.flight.fixed_axis import BLOCK, MANY
+from rigid_sim_ros.engine.flight.fixed_axis import BLOCK
+from rigid_sim_ros.engine.flight.functions import MANY
 from rigid_sim_ros.engine.flight.recycled_arrays import FEWEST, RecycledArrays
 
 from rotating import begin_one, random_quaternions  # noqa: I100
@@ -163,6 +164,27 @@ def test_some_bodies_are_columns_of_all():
             position, orientation = flights.poses_at_times(index, np.array([time, 0.0]))
             assert abs(position[:, 0] - whole[:3, index]).max() < 1e-14
             assert abs(orientation[:, 0] - whole[3:7, index]).max() < 1e-13
+
+
+def test_bodies_each_at_a_time_of_its_own_and_more_than_once():
+    moments, arguments = assorted(60)
+    flights = begun(moments, arguments)
+    random = np.random.default_rng(8)
+    indices = random.integers(60, size=500)
+    times = random.uniform(0.0, 4.0, 500)
+    times[:20] = 0.0
+    together = np.vstack(flights.motions(indices, times))
+    for place in random.permutation(500)[:100].tolist() + list(range(20)):
+        single = flights.motion(int(indices[place]), times.item(place))
+        assert abs(together[:, place] - np.concatenate(single)).max() < 1e-13
+
+
+def test_bodies_may_be_listed_more_often_than_there_are():
+    moments, arguments = assorted(5)
+    flights = begun(moments, arguments)
+    indices = np.tile(np.arange(5), 2 * BLOCK // 5)
+    whole = np.vstack(flights.poses(0.5))
+    assert abs(np.vstack(flights.poses(0.5, indices))[:, -5:] - whole).max() < 2e-15
 
 
 def test_a_new_flight_replaces_the_old_one_of_any_kind_and_no_other():
