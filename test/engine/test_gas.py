@@ -14,6 +14,8 @@
 
 """A gas of mixed bodies in a closed room: many impacts, each found, nothing lost or gained."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,15 @@ def gas(seed):
     return Scene(bodies=tuple(bodies), planes=planes, gravity=(0.0, 0.0, 0.0))
 
 
+def falling(scene):
+    """Return the scene with gravity and surfaces that rub and do not rebound well."""
+    material = Material(restitution=0.4, friction=0.5)
+    return replace(
+        scene, gravity=(0.0, 0.0, -9.81),
+        bodies=tuple(replace(body, material=material) for body in scene.bodies),
+        planes=tuple(replace(plane, material=material) for plane in scene.planes))
+
+
 @pytest.mark.parametrize('seed', [1, 2])
 def test_gas_keeps_its_energy_and_its_room(seed):
     """Elastic and frictionless: energy to 1e-13 over all impacts, no overlap, nobody gets out."""
@@ -64,3 +75,15 @@ def test_gas_keeps_its_energy_and_its_room(seed):
     assert simulation.work.impacts > 30
     assert simulation.work.contact_steps == 0
     assert np.abs(simulation.position).max() < HALF_ROOM
+
+
+def test_gas_falls_to_rest_without_overlap():
+    """With gravity, friction and losses: contact of all kinds, and never a body in another."""
+    simulation = Simulation(falling(gas(3)))
+    energy = simulation.energy()
+    while simulation.time < 0.75:
+        simulation.advance(0.05)
+        assert simulation.penetration() < 1e-4
+        assert simulation.energy() < energy + 1e-6 * abs(energy)
+        energy = simulation.energy()
+    assert simulation.work.contact_steps > 50

@@ -83,10 +83,13 @@ class Exact:
 
     def _gather(self, end):
         """Put those that may meet a body in lasting contact before `end` [s] in with it."""
-        flying, sleeping = self._islands.reached(self.time, end, self.state,
-                                                 self._encounters.involved(end))
-        joining = np.concatenate((flying, self._islands.wake(sleeping)))
-        if len(joining):
+        while True:
+            flying, sleeping = self._islands.reached(self.time, end, self.state,
+                                                     self._encounters.involved(end))
+            joining = np.concatenate((flying, self._islands.wake(sleeping)))
+            if not len(joining):
+                return
+            # and those that may meet one of them, in turn
             self._encounters.hide(joining)
             self._islands.add(joining)
 
