@@ -23,7 +23,8 @@ PATHS = ['rigid_sim_ros', 'test', 'launch', 'setup.py']
 
 @pytest.mark.flake8
 @pytest.mark.linter
-def test_flake8(monkeypatch, pytestconfig):
+def test_flake8(monkeypatch, pytestconfig, capsys):
     monkeypatch.chdir(pytestconfig.rootpath)
     return_code, errors = main.main_with_errors(argv=PATHS)
+    capsys.readouterr()  # a list of all the files checked
     assert return_code == 0, f'{len(errors)} errors:\n' + '\n'.join(errors)

@@ -27,4 +27,5 @@ def test_pep257(monkeypatch, pytestconfig, capsys, caplog):
     caplog.set_level(logging.WARNING, logger='pydocstyle.utils')
     monkeypatch.chdir(pytestconfig.rootpath)
     return_code = main(argv=['rigid_sim_ros', 'test', 'launch', 'setup.py'])
-    assert return_code == 0, capsys.readouterr().err
+    errors = capsys.readouterr().err
+    assert return_code == 0, errors
