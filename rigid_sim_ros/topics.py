@@ -42,6 +42,9 @@ EVERY_STEP = 'step'
 ON_EVENTS = 'events'
 """A message after an advance in which there were collision events; never an empty one."""
 
+FOR_DISPLAY = 'display'
+"""A message for human eyes: after an advance, but not more often than they can follow."""
+
 ON_CHANGE = 'change'
 """A message at the start and after the scene was replaced."""
 
@@ -215,8 +218,8 @@ PUBLISHED = (
               'the same events with names, a line of JSON each'),
     Published('~/scene', 'std_msgs/msg/String', Quality(1, durability='transient_local'), _scene,
               ON_CHANGE, 'the scene as loaded, YAML'),
-    Published('~/markers', 'visualization_msgs/msg/MarkerArray', Quality(1), _markers, EVERY_STEP,
-              'the bodies and the latest contacts for RViz and Foxglove'),
+    Published('~/markers', 'visualization_msgs/msg/MarkerArray', Quality(1), _markers,
+              FOR_DISPLAY, 'the bodies and the latest contacts for RViz and Foxglove'),
     Published('/clock', 'rosgraph_msgs/msg/Clock', Quality(1, reliability='best_effort'), _clock,
               EVERY_STEP, 'simulated time', parameter='publish_clock'),
     Published('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', Quality(10), _diagnostics,

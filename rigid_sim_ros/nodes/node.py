@@ -25,6 +25,7 @@ from rigid_sim_ros.nodes.command_topics import CommandTopics
 from rigid_sim_ros.nodes.control import Control
 from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
+from rigid_sim_ros.nodes.display import Display
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import Parameters, STAMP, unknown_parameter_text
 from rigid_sim_ros.nodes.publishing import Publications
@@ -76,6 +77,7 @@ class SimulationNode:
         self.late = CountedWarnings(logger.warning)
         self.publications = Publications(
             self.ros, self._source, self.recording, parameters.reliability)
+        self._display = Display(self.publications, self._source, now)
         self._clock_source = ClockSource(self.ros, self.publications, parameters)
         self._diagnostics = Diagnostics(
             self.ros.get_fully_qualified_name(), self.session, self.control, self.refused,
@@ -136,7 +138,7 @@ class SimulationNode:
     def reset(self):
         """Begin again with the scene as loaded."""
         self.recording.note_reset(self.session.time, self.parameters.reset_time)
-        self.publications.clear_markers(self.session.time)
+        self._display.clear(self.session.time)
         self.control.reset()
 
     def record(self, wanted):
@@ -155,6 +157,7 @@ class SimulationNode:
 
     def _publish_state(self, time, collisions):
         self.publications.send_state(time, collisions)
+        self._display.take(time, collisions)
 
     def _change_commands(self):
         self.session.commands.axes = self.parameters.command_axes
@@ -181,4 +184,6 @@ class SimulationNode:
         taken = self.session.commands.taken
         if taken != self._taken_shown or self.publications.has_new_subscriber():
             self.publications.show_state(self.session.time)
+            self._display.draw(self.session.time)
+        self._display.catch_up(self.session.time)
         self._taken_shown = taken

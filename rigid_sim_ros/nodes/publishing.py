@@ -21,9 +21,9 @@ its messages, and a message is made only if there is a subscriber or a recording
 
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from rigid_sim_ros.messages import encode_delete_all
 from rigid_sim_ros.nodes.interfaces import interface, quality_of_service
-from rigid_sim_ros.topics import EVERY_SECOND, EVERY_STEP, ON_CHANGE, ON_EVENTS, PUBLISHED
+from rigid_sim_ros.topics import (
+    EVERY_SECOND, EVERY_STEP, FOR_DISPLAY, ON_CHANGE, ON_EVENTS, PUBLISHED)
 
 
 class Publication:
@@ -108,7 +108,7 @@ class Publications:
         """Publish a row's topic from now on."""
         if row.name not in self._publications:
             # only the streams: losing an event or the scene is never what anybody wants
-            is_stream = row.when == EVERY_STEP and not row.parameter
+            is_stream = row.when in (EVERY_STEP, FOR_DISPLAY) and not row.parameter
             reliability = self._reliability if is_stream else None
             self._publications[row.name] = Publication(
                 self._node, row, self._source, self._recording, reliability)
@@ -152,16 +152,11 @@ class Publications:
             self._source.statuses = statuses()
             self._send(EVERY_SECOND, time)
 
-    def clear_markers(self, time):
-        """Remove every marker from the screens of those who watch."""
-        for publication in self:
-            if publication.row.type_name == 'visualization_msgs/msg/MarkerArray':
-                publication.send_bytes(encode_delete_all(time, self._source.frame_id))
-
     def has_new_subscriber(self):
         """Tell whether somebody subscribed to a stream since this was last asked."""
         # all are asked: each remembers that it was
-        answers = [publication.has_new_subscriber() for publication in self.of(EVERY_STEP)]
+        answers = [publication.has_new_subscriber()
+                   for publication in (*self.of(EVERY_STEP), *self.of(FOR_DISPLAY))]
         return any(answers)
 
     def of(self, when):

@@ -30,6 +30,7 @@ from rigid_sim_ros.nodes.node import SimulationNode  # noqa: E402
 from rigid_sim_ros.nodes.running import drive  # noqa: E402
 from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
 from std_msgs.msg import Header  # noqa: E402
+from visualization_msgs.msg import Marker  # noqa: E402
 
 
 class Stop(StopRequest):
@@ -100,6 +101,24 @@ def test_only_what_is_recorded_is_built(tmp_path):
         assert not set(counts) & {'~/markers', '/diagnostics'}
         # the first state, and one more for each period
         assert counts['~/poses'] == 1 + node.session.time // 10_000_000
+
+
+def test_markers_come_as_fast_as_eyes_see_and_are_removed_on_reset():
+    with hosted('', publish_rate=500.0) as ([node], run), Client() as client:
+        markers = client.listen('~/markers')
+        run(lambda: client.poll(markers))
+        start, count = time.monotonic(), len(markers)
+        run(lambda: time.monotonic() > start + 0.5 and client.poll(markers) is markers)
+        client.spin(0.1)
+        # thirty a second, and one for the edges
+        assert 2 <= len(markers) - count <= 17
+        bodies = len(node.session.simulation.names)
+        assert [marker.action for marker in markers[-1].markers] == [Marker.ADD] * bodies
+        count = len(markers)
+        node.reset()
+        run(lambda: len(client.poll(markers)) >= count + 2)
+        assert [marker.action for marker in markers[count].markers] == [Marker.DELETEALL]
+        assert [marker.action for marker in markers[count + 1].markers] == [Marker.ADD] * bodies
 
 
 @pytest.mark.parametrize('executor', [EVENTS, SINGLE_THREADED])
