@@ -76,10 +76,10 @@ class Flights:
         two stay constant through the flight.
         """
         if len(indices) == 1:
-            self._begin_one(int(indices[0]), time, *(
-                np.ravel(values).tolist() for values in (
+            self._begin_one(int(indices[0]), time, *[
+                values.ravel().tolist() for values in (
                     position, orientation, linear_velocity, angular_velocity, acceleration,
-                    torque)))
+                    torque)])
             return
         self._translations.begin(indices, time, position, linear_velocity, acceleration)
         moments = self._inertia[:, indices]

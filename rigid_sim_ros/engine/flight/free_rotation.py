@@ -85,7 +85,7 @@ class FreeRotations:
         polhode = polhode_of_many(moments, np.array(to_body(quaternion, rate)))
         near = polhode.complementary < HYPERBOLIC_BELOW
         for (form, table), chosen in zip(self._forms, (~near, near)):
-            for body in bodies[~chosen].tolist():
+            for body in table.members(bodies[~chosen]).tolist():
                 table.remove(body)
             if chosen.any():
                 here = polhode.chosen(chosen)
@@ -173,15 +173,15 @@ def _leading(functions, polhode, first, time, quaternion, rate):
     w, z, x, y = first
     # the frame of the momentum is so placed that the start is exact
     world = normalized(functions, product(product(quaternion, polhode.axes), (-x, -y, -z, w)))
+    x, y, z, w = world
     p, q, r, s = polhode.axes
-    columns = [product(product(world, unit), (-p, -q, -r, s)) for unit in UNITS]
+    back = -p, -q, -r, s
+    # q(t) = world pair conj(axes) is linear in the pair's parts: the images of w, z, x, y
+    columns = [product(one, back) for one in (
+        world, (y, -x, w, -z), (w, z, -y, -x), (-z, w, x, -y))]
     return [time, *rate, *(bound * ROUNDING for bound in polhode.rate_bounds(functions)),
             *(column[row] for row in range(4) for column in columns),
             *polhode.body_rates(functions)]
-
-
-UNITS = ((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 0.0), (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
-"""The quaternions w, z, x, y: the order of a pair's parts Re a, Im a, Re b, Im b."""
 
 
 def _unit_pair(a, b, c, d, phase):

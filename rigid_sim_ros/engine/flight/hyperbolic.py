@@ -31,7 +31,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.flight.elliptic import complementary_nome, quarter_period
 from rigid_sim_ros.engine.flight.multiple_angles import (
-    combined, cubics, interleaved, ODD_COSINE, ODD_SINE)
+    interleaved, odd_cosines, odd_sines, values_of_cubics)
 
 ROW_COUNT = 24
 """See `rows`."""
@@ -67,10 +67,10 @@ def rows(functions, polhode):
         per_period, period, scale, turn, twist,
         functions.where(polhode.backward, -sign, sign),
         *interleaved(
-            combined(ODD_COSINE, c),
-            combined(ODD_SINE, [-sign * one for one in d]),
-            combined(ODD_SINE, [c[0], -c[1], c[2], -c[3]]),
-            combined(ODD_COSINE, [-sign * d[0], sign * d[1], -sign * d[2], sign * d[3]]))]
+            odd_cosines(*c),
+            odd_sines(*(-sign * one for one in d)),
+            odd_sines(c[0], -c[1], c[2], -c[3]),
+            odd_cosines(-sign * d[0], sign * d[1], -sign * d[2], sign * d[3]))]
 
 
 def pair(rows, elapsed):
@@ -103,7 +103,7 @@ def pairs(rows, elapsed):
     x = np.clip(u * rows[4], -FARTHEST, FARTHEST)
     sine, cosine = np.sinh(x), np.cosh(x)
     sign = rows[7] * (1 - 2 * (half_period % 2))
-    parts = cubics(rows[8:], sine * sine)
+    parts = values_of_cubics(rows[8:], sine * sine)
     parts[0] *= cosine
     parts[1] *= sine
     sine *= sign

@@ -13,39 +13,42 @@
 # limitations under the License.
 
 """
-Sums over multiples of an angle as polynomials.
+Sums over multiples of an angle as cubics.
 
 The two forms of a free rotation, `trigonometric` and `hyperbolic`, sum theta functions with few
 terms. With S = -sin^2 z the multiple-angle formulas are polynomials of S with only positive
-coefficients, and the same ones hold for hyperbolic functions with S = sinh^2 x.
+coefficients, and the same ones hold for hyperbolic functions with S = sinh^2 x. Coefficients are
+given lowest order first.
 """
 
-EVEN_COSINE = ((1,), (1, 2), (1, 8, 8), (1, 18, 48, 32))
-"""cos 2nz, n = 0 to 3; lowest order first."""
 
-EVEN_SINE = ((2,), (4, 8), (6, 32, 32))
-"""sin 2nz / (sin z cos z), n = 1 to 3."""
-
-ODD_COSINE = ((1,), (1, 4), (1, 12, 16), (1, 24, 80, 64))
-"""cos (2n+1)z / cos z, n = 0 to 3."""
-
-ODD_SINE = ((1,), (3, 4), (5, 20, 16), (7, 56, 112, 64))
-"""sin (2n+1)z / sin z, n = 0 to 3."""
+def even_cosines(a, b, c):
+    """Return the cubic of 1 + a cos 2z + b cos 4z + c cos 6z."""
+    return 1 + a + b + c, 2 * a + 8 * b + 18 * c, 8 * b + 48 * c, 32 * c
 
 
-def combined(table, weights):
-    """Return the cubic, lowest order first, of the weighted sum of a table's rows."""
-    return [sum(row[order] * weight for row, weight in zip(table, weights) if order < len(row))
-            for order in range(4)]
+def even_sines(a, b, c):
+    """Return the cubic of (a sin 2z + b sin 4z + c sin 6z) / (sin z cos z)."""
+    return 2 * a + 4 * b + 6 * c, 8 * b + 32 * c, 32 * c, 0 * c
 
 
-def interleaved(*polynomials):
-    """Return coefficients in one list, those of order 0 first, as `cubics` wants them."""
-    return [coefficient for order in zip(*polynomials) for coefficient in order]
+def odd_cosines(a, b, c, d):
+    """Return the cubic of (a cos z + b cos 3z + c cos 5z + d cos 7z) / cos z."""
+    return a + b + c + d, 4 * b + 12 * c + 24 * d, 16 * c + 80 * d, 64 * d
 
 
-def cubics(coefficients, s):
-    """Return the values (4, k) at s (k,) of four cubics a column, interleaved (16, k)."""
+def odd_sines(a, b, c, d):
+    """Return the cubic of (a sin z + b sin 3z + c sin 5z + d sin 7z) / sin z."""
+    return a + 3 * b + 5 * c + 7 * d, 4 * b + 20 * c + 56 * d, 16 * c + 112 * d, 64 * d
+
+
+def interleaved(*cubics):
+    """Return the coefficients of cubics in one list, those of order 0 first."""
+    return [coefficient for order in zip(*cubics) for coefficient in order]
+
+
+def values_of_cubics(coefficients, s):
+    """Return the values (4, k) at s (k,) of four interleaved cubics a column, (16, k)."""
     value = coefficients[12:] * s
     value += coefficients[8:12]
     value *= s

@@ -58,6 +58,10 @@ class PackedColumns:
         places = np.flatnonzero(slots != ABSENT)
         return places, self._columns[:, slots[places]]
 
+    def members(self, bodies):
+        """Return those of bodies (k,) that are members, (m,)."""
+        return bodies[self._slots[bodies] != ABSENT]
+
     def put(self, bodies, columns):
         """Set the numbers (rows, k) of bodies (k,), new members or not."""
         slots = self._slots[bodies]

@@ -99,24 +99,23 @@ class Polhode:
         quadratic, largest at an end or at its vertex.
         """
         i1, i2, i3 = self.moments
+        a, b, c = 1 / i1 ** 2, 1 / i2 ** 2, 1 / i3 ** 2
         middle = functions.minimum(self.amplitude1 ** 2 / self.f2, 1.0)
-        at_zero = (self.amplitude1 ** 2, 0.0, self.amplitude3 ** 2)
-        slopes = (-at_zero[0], middle, -self.f1 * middle)
-        u = [(self.momentum / moment) ** 2 * one for moment, one in zip(self.moments, at_zero)]
-        v = [(self.momentum / moment) ** 2 * one for moment, one in zip(self.moments, slopes)]
-        rate = functions.sqrt(functions.maximum(sum(u), sum(u) + sum(v)))
-        ratios = (((i2 - i3) / i1) ** 2, ((i3 - i1) / i2) ** 2, ((i1 - i2) / i3) ** 2)
-        zeroth = first = second = 0.0
-        for ratio, j, k in zip(ratios, (1, 2, 0), (2, 0, 1)):
-            zeroth = zeroth + ratio * u[j] * u[k]
-            first = first + ratio * (u[j] * v[k] + u[k] * v[j])
-            second = second + ratio * v[j] * v[k]
-        vertex = functions.where(
-            second < 0, -0.5 * first / functions.where(second < 0, second, 1.0), 0.0)
-        vertex = functions.minimum(functions.maximum(vertex, 0.0), 1.0)
-        largest = functions.maximum(zeroth + vertex * (first + vertex * second),
-                                    functions.maximum(zeroth, zeroth + first + second))
-        return rate, functions.sqrt(largest)
+        # squares of the rates over |L|: u at x = 0 with slopes v; the second is v2 x
+        u1, u3 = a * self.amplitude1 ** 2, c * self.amplitude3 ** 2
+        v1, v2, v3 = -u1, b * middle, -c * self.f1 * middle
+        rate = functions.sqrt(u1 + u3 + functions.maximum(v1 + v2 + v3, 0.0))
+        p, q, r = ((i2 - i3) / i1) ** 2, ((i3 - i1) / i2) ** 2, ((i1 - i2) / i3) ** 2
+        zeroth = q * u1 * u3
+        first = p * v2 * u3 + q * (u3 * v1 + v3 * u1) + r * u1 * v2
+        second = p * v2 * v3 + q * v3 * v1 + r * v1 * v2
+        # the vertex is a maximum, and inside, only where the slope falls through zero
+        inside = functions.where(first * (first + 2 * second) < 0, -0.5 * first, 0.0)
+        vertex = inside / functions.where(second < 0, second, 1.0)
+        largest = functions.maximum(functions.where(
+            second < 0, zeroth + vertex * (first + vertex * second), 0.0),
+            functions.maximum(zeroth, zeroth + first + second))
+        return self.momentum * rate, self.momentum * self.momentum * functions.sqrt(largest)
 
 
 def polhode_of_one(moments, rate):

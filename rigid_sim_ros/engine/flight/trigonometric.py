@@ -45,7 +45,7 @@ import numpy as np
 from rigid_sim_ros.engine.flight.elliptic import nome, quarter_period
 from rigid_sim_ros.engine.flight.functions import cosine_and_sine
 from rigid_sim_ros.engine.flight.multiple_angles import (
-    combined, cubics, EVEN_COSINE, EVEN_SINE, interleaved, ODD_COSINE, ODD_SINE)
+    even_cosines, even_sines, interleaved, odd_cosines, odd_sines, values_of_cubics)
 
 ROW_COUNT = 19
 """Angle at the start, its rate, twist rate, then four interleaved cubics, see `pair`."""
@@ -76,16 +76,14 @@ def rows(functions, polhode):
     slope = -2 * (p[0] - r[0]) + 4 * (p[1] - r[1]) - 6 * (p[2] - r[2])
     value = 1 - (p[0] + r[0]) + (p[1] + r[1]) - (p[2] + r[2])
     turn = polhode.twist - sign * rate * slope / value
-    even = [-(p[0] + r[0]), p[1] + r[1], -(p[2] + r[2])]
     return [
         pi / (2 * period) * start, rate, turn,
         *interleaved(
-            combined(EVEN_COSINE, [1.0, *even]),
-            combined(EVEN_SINE, [-sign * (p[0] - r[0]), sign * (p[1] - r[1]),
-                                 -sign * (p[2] - r[2])]),
-            combined(ODD_SINE, [sign * (b[0] + c[0]), -sign * (b[1] + c[1]),
-                                sign * (b[2] + c[2]), -sign * (b[3] + c[3])]),
-            combined(ODD_COSINE, [c[0] - b[0], b[1] - c[1], c[2] - b[2], b[3] - c[3]]))]
+            even_cosines(-(p[0] + r[0]), p[1] + r[1], -(p[2] + r[2])),
+            even_sines(sign * (r[0] - p[0]), sign * (p[1] - r[1]), sign * (r[2] - p[2])),
+            odd_sines(sign * (b[0] + c[0]), -sign * (b[1] + c[1]), sign * (b[2] + c[2]),
+                      -sign * (b[3] + c[3])),
+            odd_cosines(c[0] - b[0], b[1] - c[1], c[2] - b[2], b[3] - c[3]))]
 
 
 def pair(rows, elapsed):
@@ -110,7 +108,7 @@ def pairs(rows, elapsed):
     waves = np.empty((2,) + zeta.shape)
     cosine, sine = waves
     cosine_and_sine(zeta, waves)
-    parts = cubics(rows[3:], -sine * sine)
+    parts = values_of_cubics(rows[3:], -sine * sine)
     parts[2] *= sine
     sine *= cosine
     parts[1] *= sine
