@@ -44,7 +44,7 @@ def add_options(parser):
     parser.add_argument('--engines', nargs='+', metavar='ENGINE', default=[],
                         help='names of engines; default all that are installed')
     parser.add_argument('--rates', nargs='+', type=int, metavar='HZ', default=[],
-                        help=f'steps a second, multiples of {FRAME_RATE}; else the problem\'s own')
+                        help=f'steps a second, multiples of {FRAME_RATE}')
     parser.add_argument('--repeats', type=int, default=Effort.repeats,
                         help='least number of timed runs (%(default)s); the median counts')
     parser.add_argument('--timeout', type=float, default=Effort.timeout, metavar='SECONDS',

@@ -27,7 +27,8 @@ class Bullet(Engine):
     Sequential impulses, always 50 iterations, friction cones, no damping, rebound at any speed.
 
     Bullet damps 4 % a second and forgets restitution below 0.2 m/s unless told otherwise. It
-    multiplies the restitutions and frictions of a pair, so each surface gets the square root.
+    multiplies the restitutions and frictions of a pair, so each surface gets the square root: the
+    scene file's rule for frictions, and for restitutions if both are equal.
     Bodies are multi-bodies of one link, pybullet's default: as plain rigid bodies they take up to
     half less time in stacks, but slide to rest seven times less accurately, and off an incline not
     at all. There is one world a process, as naming the world in each call would cost time.

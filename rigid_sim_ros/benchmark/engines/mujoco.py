@@ -14,6 +14,7 @@
 
 """MuJoCo."""
 
+from itertools import combinations
 from math import log, pi, sqrt
 
 import mujoco
@@ -52,7 +53,8 @@ class Mujoco(Engine):
 
     Elliptic cones with `impratio` 10 are what the manual advises against creep. MuJoCo has no
     coefficient of restitution: `solver_reference`. Where there is no friction contacts have one
-    row instead of three. Constant forces are `xfrc_applied`.
+    row instead of three. Constant forces are `xfrc_applied`. MuJoCo mixes frictions its own way, so
+    where materials differ each pair of bodies is given what the scene file's rule says.
     """
 
     integrator = mujoco.mjtIntegrator.mjINT_EULER
@@ -62,12 +64,17 @@ class Mujoco(Engine):
         spec = mujoco.MjSpec()
         self._set_options(spec.option, scene, step, sleeping)
         for plane in scene.planes:
-            geom = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1),
+            geom = spec.worldbody.add_geom(name=plane.name, size=(0, 0, 1),
+                                           type=mujoco.mjtGeom.mjGEOM_PLANE,
                                            pos=np.multiply(plane.normal, plane.offset),
                                            quat=_z_axis_to(plane.normal))
             _set_material(geom, plane.material, step)
         for body in scene.bodies:
             _add_body(spec, body, step)
+        rows = (*scene.planes, *scene.bodies)
+        if len({row.material for row in rows}) > 1:
+            for first, second in combinations(rows, 2):
+                _add_pair(spec, first, second, step)
         moving = [body for body in scene.bodies if not body.fixed]
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
@@ -132,7 +139,8 @@ def _add_body(spec, body, step):
                                          ipos=(0, 0, 0), iquat=(1, 0, 0, 0),
                                          explicitinertial=True, **pose)
         target.add_freejoint()
-    geom = target.add_geom(type=TYPES[body.shape.kind], size=body.shape.half_extents)
+    geom = target.add_geom(name=body.name, type=TYPES[body.shape.kind],
+                           size=body.shape.half_extents)
     _set_material(geom, body.material, step)
 
 
@@ -141,6 +149,15 @@ def _set_material(geom, material, step):
     geom.friction = (material.friction, 0.005, 0.0001)
     geom.solref = solver_reference(material.restitution, step)
     geom.solimp = IMPEDANCE
+
+
+def _add_pair(spec, first, second, step):
+    """Give a pair the larger restitution and the geometric mean of the frictions."""
+    friction = sqrt(first.material.friction * second.material.friction)
+    restitution = max(first.material.restitution, second.material.restitution)
+    spec.add_pair(geomname1=first.name, geomname2=second.name, condim=3 if friction > 0 else 1,
+                  friction=(friction, friction, 0.005, 0.0001, 0.0001), solimp=IMPEDANCE,
+                  solref=solver_reference(restitution, step))
 
 
 def _scalar_first(orientation):

@@ -149,6 +149,47 @@ def ball_errors(trajectory):
                 np.linalg.norm(trajectory.angular_velocity[-1, 0] - spin) / spin[1])}
 
 
+BALLS, BALL_RADIUS, BALL_SPACING = 5, 0.1, 0.4
+BASE_SIZE, BASE_MASS, PUSH = (2.4, 2.4, 0.2), 10.0, 150.0
+GROUND_MIX, BALL_MIX = 0.4, 0.8
+"""Frictions of the box with the ground and with the balls: geometric means of the materials'."""
+
+
+def carried_scene():
+    """Return a box that is pushed along the ground with 25 balls on it (SimBenchmark's rolling)."""
+    base_friction = 0.8
+    materials = {name: {'restitution': 0.0, 'friction': mixed ** 2 / base_friction}
+                 for name, mixed in (('ground', GROUND_MIX), ('ball', BALL_MIX))}
+    base = {'name': 'base', 'box': {'size': list(BASE_SIZE)}, 'mass': BASE_MASS,
+            'position': [0.0, 0.0, BASE_SIZE[2] / 2], 'force': [PUSH, 0.0, 0.0]}
+    top = BASE_SIZE[2] + BALL_RADIUS
+    places = [(place - BALLS // 2) * BALL_SPACING for place in range(BALLS)]
+    balls = [{'name': f'ball_{row}_{column}', 'sphere': {'radius': BALL_RADIUS}, 'mass': 1.0,
+              'position': [x, y, top], 'material': materials['ball']}
+             for row, x in enumerate(places) for column, y in enumerate(places)]
+    return scene([base, *balls], friction=base_friction,
+                 planes=({'name': 'ground', 'material': materials['ground']},))
+
+
+def carried_errors(trajectory):
+    """
+    Compare with balls that roll: each has 2/7 of the box's acceleration.
+
+    So the box carries 2/7 of their mass: a = (F - mu g (M + m)) / (M + 2/7 m), with m of all balls.
+    """
+    mass = BALLS * BALLS * 1.0
+    acceleration = ((PUSH - GROUND_MIX * GRAVITY * (BASE_MASS + mass))
+                    / (BASE_MASS + 2 / 7 * mass))
+    share = np.array([1.0] + [2 / 7] * (BALLS * BALLS))
+    final = acceleration * trajectory.times[-1]
+    error = trajectory.linear_velocity[-1] - np.outer(share * final, (1.0, 0.0, 0.0))
+    moved = share * acceleration * trajectory.times[-1] ** 2 / 2
+    start = np.array([0.0] + [(place - BALLS // 2) * BALL_SPACING
+                              for place in range(BALLS) for _ in range(BALLS)])
+    return {'velocity_error_relative': largest(error) / final,
+            'position_error_m': largest(trajectory.position[-1, :, 0] - start - moved)}
+
+
 PROBLEMS = (
     Problem('slide', 'cube sliding to rest, mu 0.3 from 3 m/s',
             slide_scene, frames(1.5, 6), slide_errors),
@@ -162,4 +203,6 @@ PROBLEMS = (
             tip_scene, frames(1.0), tip_errors),
     Problem('rolling', 'ball thrown along the ground, mu 0.3 from 3 m/s, 1 s',
             ball_scene, frames(1.0, 6), ball_errors),
+    Problem('rolling_25', 'box pushed along the ground under 25 balls, 1 s',
+            carried_scene, (1.0,), carried_errors, bodies=1 + BALLS * BALLS),
 )
