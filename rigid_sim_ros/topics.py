@@ -227,6 +227,19 @@ PUBLISHED = (
 )
 """Every topic the node publishes."""
 
+
+def _transforms(source):
+    simulation = source.simulation
+    encoder = messages.TransformsEncoder(source.frame_id, simulation.names)
+    return lambda time_ns: encoder.encode(time_ns, simulation.position, simulation.orientation)
+
+
+TRANSFORMS = Published(
+    '/tf', 'tf2_msgs/msg/TFMessage', Quality(100), _transforms, EVERY_STEP,
+    'the poses once more, as transforms from the world to frames named like the bodies',
+    parameter='publish_tf')
+"""Published if it is asked for and tf2_msgs is there, which is not part of a bare rclpy."""
+
 COMMANDS = (
     Command('~/cmd_force', 'geometry_msgs/msg/Vector3Stamped', Quality(10),
             'hold a force [N] on the body named by header.frame_id'),

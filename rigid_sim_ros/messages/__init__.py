@@ -35,13 +35,14 @@ from rigid_sim_ros.messages.commands import (
     Vector3Stamped, WrenchStamped)
 from rigid_sim_ros.messages.markers import (
     ARROW, CUBE, encode_delete_all, MarkerArrayEncoder, SPHERE)
+from rigid_sim_ros.messages.transforms import TransformsEncoder
 
 __all__ = [
     'ARROW', 'COLLISION_TYPE', 'CUBE', 'CollisionEncoder', 'DiagnosticStatus', 'ERROR',
     'MarkerArrayEncoder', 'MessageError', 'MultiDOFJointState', 'MultiDOFJointStateDecoder',
     'MultiDOFJointStateEncoder', 'OK', 'POINT_TYPE', 'PointCloud2', 'PoseArray',
-    'PoseArrayEncoder', 'SPHERE', 'STALE', 'TwistStamped', 'Vector3Stamped', 'WARN',
-    'WrenchStamped', 'collision_lines', 'decode_clock', 'decode_collisions',
+    'PoseArrayEncoder', 'SPHERE', 'STALE', 'TransformsEncoder', 'TwistStamped', 'Vector3Stamped',
+    'WARN', 'WrenchStamped', 'collision_lines', 'decode_clock', 'decode_collisions',
     'decode_point_cloud', 'decode_pose_array', 'decode_string', 'decode_twist_stamped',
-    'decode_vector3_stamped', 'decode_wrench_stamped', 'encode_clock',
-    'encode_delete_all', 'encode_diagnostic_array', 'encode_string']
+    'decode_vector3_stamped', 'decode_wrench_stamped', 'encode_clock', 'encode_delete_all',
+    'encode_diagnostic_array', 'encode_string']

@@ -14,6 +14,10 @@
 
 """What users are told: usage, and at the start where things are and what can be tried."""
 
+from pathlib import Path
+from shutil import which
+import sys
+
 from rigid_sim_ros.nodes.parameters import PARAMETERS
 from rigid_sim_ros.topics import COMMANDS, SERVICES
 
@@ -60,13 +64,22 @@ def welcome(node, simulation, parameters, publications, recording_text):
 def examples(resolve, names):
     """Return three shell commands that move bodies; `resolve` gives a topic's full name."""
     first, last = names[0], names[-1]
+    publish = _publishing_command()
     return (
-        f"ros2 topic pub --once {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
+        f"{publish} {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
         f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'",
-        f"ros2 topic pub --once {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped "
+        f"{publish} {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped "
         f"'{{header: {{frame_id: {last}}}, vector: {{x: 20.0}}}}'",
-        f"ros2 topic pub --once {resolve('~/cmd_torque')} geometry_msgs/msg/Vector3Stamped "
+        f"{publish} {resolve('~/cmd_torque')} geometry_msgs/msg/Vector3Stamped "
         f"'{{header: {{frame_id: {last}}}, vector: {{z: 0.5}}}}'")
+
+
+def _publishing_command():
+    """Return how to send a message from here: by ROS, or where that is not, by `send`."""
+    own = Path(sys.executable).with_name('rigid_sim_send')
+    if which('ros2') or not own.is_file():
+        return 'ros2 topic pub --once'
+    return str(own.relative_to(Path.cwd()) if own.is_relative_to(Path.cwd()) else own)
 
 
 def _count(simulation):

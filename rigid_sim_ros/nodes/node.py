@@ -27,14 +27,15 @@ from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
 from rigid_sim_ros.nodes.display import Display
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
-from rigid_sim_ros.nodes.parameters import Parameters, STAMP, unknown_parameter_text
+from rigid_sim_ros.nodes.parameters import (
+    ParameterError, Parameters, STAMP, unknown_parameter_text)
 from rigid_sim_ros.nodes.publishing import Publications
 from rigid_sim_ros.nodes.recording import Recording
 from rigid_sim_ros.nodes.services import Services
 from rigid_sim_ros.nodes.session import Session
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.scene import dump_scene, load_scene
-from rigid_sim_ros.topics import Source
+from rigid_sim_ros.topics import Source, TRANSFORMS
 
 NAME = 'rigid_sim'
 
@@ -77,6 +78,8 @@ class SimulationNode:
         self.late = CountedWarnings(logger.warning)
         self.publications = Publications(
             self.ros, self._source, self.recording, parameters.reliability)
+        if parameters.publish_tf:
+            self._publish_transforms()
         self._display = Display(self.publications, self._source, now)
         self._clock_source = ClockSource(self.ros, self.publications, parameters)
         self._diagnostics = Diagnostics(
@@ -158,6 +161,14 @@ class SimulationNode:
     def _publish_state(self, time, collisions):
         self.publications.send_state(time, collisions)
         self._display.take(time, collisions)
+
+    def _publish_transforms(self):
+        try:
+            self.publications.begin(TRANSFORMS)
+        except ImportError:
+            raise ParameterError(
+                'parameter publish_tf is true, but there is no tf2_msgs here: install it (apt '
+                'install ros-jazzy-tf2-msgs), or leave publish_tf false') from None
 
     def _change_commands(self):
         self.session.commands.axes = self.parameters.command_axes

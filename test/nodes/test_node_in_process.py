@@ -15,7 +15,10 @@
 """Nodes made in the test's own process: what is built, who publishes the clock, both executors."""
 
 from contextlib import contextmanager
+from importlib.util import find_spec
+import sys
 import time
+from types import ModuleType
 
 import pytest
 
@@ -26,7 +29,9 @@ from node_harness import Client, PATIENCE  # noqa: E402
 from rclpy.context import Context  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rigid_sim_ros.nodes.executors import EVENTS, make_executor, SINGLE_THREADED  # noqa: E402
+from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
 from rigid_sim_ros.nodes.node import SimulationNode  # noqa: E402
+from rigid_sim_ros.nodes.parameters import ParameterError  # noqa: E402
 from rigid_sim_ros.nodes.running import drive  # noqa: E402
 from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
 from std_msgs.msg import Header  # noqa: E402
@@ -165,3 +170,29 @@ def test_both_publish_the_clock_if_told_to():
     with hosted('left', 'right', publish_clock=True) as (nodes, run):
         run(lambda: nodes[0].session.time > 1_200_000_000)
         assert len(nodes[0].ros.get_publishers_info_by_topic('/clock')) == 2
+
+
+def test_transforms_need_tf2_msgs():
+    if find_spec('tf2_msgs'):
+        pytest.skip('tf2_msgs is installed')
+    with pytest.raises(ParameterError, match='publish_tf is true, but there is no tf2_msgs'):
+        with hosted('', publish_tf=True):
+            pass
+
+
+def test_transforms_are_published_if_asked_for(monkeypatch):
+    typesys = pytest.importorskip('rosbags.typesys')
+    if not find_spec('tf2_msgs'):
+        # bytes go through a topic of any type; rosbags knows the one they are meant for
+        module = ModuleType('tf2_msgs.msg')
+        module.TFMessage = PoseArray
+        monkeypatch.setitem(sys.modules, 'tf2_msgs', ModuleType('tf2_msgs'))
+        monkeypatch.setitem(sys.modules, 'tf2_msgs.msg', module)
+    with hosted('', publish_tf=True) as ([node], run), Client() as client:
+        received = []
+        client.node.create_subscription(
+            interface('tf2_msgs/msg/TFMessage'), '/tf', received.append, 10, raw=True)
+        run(lambda: client.poll(received))
+        store = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+        transforms = store.deserialize_cdr(received[-1], 'tf2_msgs/msg/TFMessage').transforms
+        assert tuple(row.child_frame_id for row in transforms) == node.session.simulation.names

@@ -63,7 +63,7 @@ def test_start_tells_where_everything_is(tmp_path):
         for row in (*PUBLISHED, *COMMANDS, *SERVICES):
             assert client.topic(row.name) in process.error
         commands = [line.split(': ', 1)[1].strip() for line in process.error.splitlines()
-                    if 'ros2 topic pub' in line]
+                    if ' geometry_msgs/msg/' in line]
         assert len(commands) == 3
         scene = client.listen('~/scene', durability='transient_local')
         text = client.spin_until(lambda: scene and scene[0].data, 'the latched scene')
