@@ -134,13 +134,13 @@ class DrivenRotations:
             orientation[:, place], rate[:, place] = self.motion_of_one(
                 int(indices[place]), times.item(place))
 
-    def write_rate_bounds(self, indices, start, end, out):
-        """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
-        self._write_bounds(self._law.rate_bound, indices, start, end, out)
-
-    def write_rate_derivative_bounds(self, indices, start, end, out):
-        """Write upper bounds of |dw/dt| to `out` (k,), as `write_rate_bounds`."""
-        self._write_bounds(self._law.rate_derivative_bound, indices, start, end, out)
+    def write_bounds(self, indices, start, end, rate, derivative):
+        """Write upper bounds of |w| and |dw/dt|, (k,) each, of those of bodies (k,) here."""
+        places = self._table.select(indices)[0]
+        if len(places):
+            constants = _rows(self._chains[body].constants for body in indices[places].tolist())
+            start, end = (np.broadcast_to(time, len(indices))[places] for time in (start, end))
+            rate[places], derivative[places] = self._law.bounds(constants, start, end)
 
     def motion_of_one(self, body, time):
         """Return quaternion and world rate of one body in plain floats."""
@@ -152,18 +152,19 @@ class DrivenRotations:
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""
-        chain = self._chains[body]
-        result = np.empty((4, len(times)))
         if not len(times):
-            return result
+            return np.empty((4, 0))
+        chain = self._chains[body]
         chain.reach(float(times.max()))
         numbers = np.searchsorted(chain.times, times, side='right') - 1
-        for number in np.unique(numbers).tolist():
+        first, last = int(numbers.min()), int(numbers.max())
+        if first == last:
+            return self._orientations_in_stride(chain, first, times)
+        result = np.empty((4, len(times)))
+        for number in range(first, last + 1):
             chosen = numbers == number
-            unit, series = chain.stride(number)
-            fraction = (times[chosen] - chain.times[number]) / unit
-            result[:, chosen] = self._law.orientations_of_one(
-                ARRAYS, chain.constants, series, fraction)
+            if chosen.any():
+                result[:, chosen] = self._orientations_in_stride(chain, number, times[chosen])
         return result
 
     # -- inside --------------------------------------------------------------------------------
@@ -174,6 +175,13 @@ class DrivenRotations:
         # a stride that holds no time: it is made when it is first asked for
         column[END] = -np.inf
         self._table.put_one(body, column)
+
+    def _orientations_in_stride(self, chain, number, times):
+        """Return the quaternions of one body at times (K,) in one stride, (4, K)."""
+        unit, series = chain.stride(number)
+        fraction = (times - chain.times[number]) / unit
+        return np.array(self._law.orientations_of_one(
+            ARRAYS, chain.constants, series, fraction))
 
     def _current(self, time, indices):
         """
@@ -224,14 +232,7 @@ class DrivenRotations:
             self._table.put(bodies[holds], np.array(columns)[:, holds])
         return ~holds
 
-    def _write_bounds(self, bound, indices, start, end, out):
-        places, columns = self._table.select(indices)
-        if len(places):
-            constants = _rows(self._chains[body].constants for body in indices[places].tolist())
-            start, end = (np.broadcast_to(time, len(indices))[places] for time in (start, end))
-            out[places] = bound(constants, start, end)
-
 
 def _rows(columns):
-    """Return tuples, one a body, as arrays, one a quantity."""
-    return [np.array(row) for row in zip(*columns)]
+    """Return tuples, one a body, as an array (quantities, bodies)."""
+    return np.array(list(columns)).T

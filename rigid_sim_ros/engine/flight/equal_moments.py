@@ -36,7 +36,7 @@ as e^reach; about the least cost, measured, and the least error.
 NEGLIGIBLE = 3e-17
 """Size of the terms of two consecutive orders at which a series ends."""
 
-START, RATE, GROWTH, FRAME, SPIN = 0, slice(1, 4), slice(4, 7), slice(7, 11), slice(11, 14)
+START, RATE, GROWTH, FRAME, SPIN = 0, slice(1, 4), slice(4, 7), slice(7, 11), slice(11, 15)
 """A body's constants: start [s]; rate there and its growth, world axes; frame; see `first`."""
 
 KEPT = 11
@@ -50,13 +50,13 @@ def first(functions, time, moments, quaternion, rate, torque):
     """
     Return (constants, state) of a rotation at its start, in world axes.
 
-    The state is the pair (a, b) in the frame. The constants end with the rate in the frame:
-    the complex part across the torque, the part along it and the growth of that.
+    The state is the pair (a, b) in the frame. The constants end with the rate in the frame: the
+    two components across the torque, the one along it and the growth of that.
     """
     frame, magnitude = frame_of(functions, torque)
     a, b, (x, y, z) = into_frame(frame, quaternion, rate)
     growth = tuple(component / moments[0] for component in torque)
-    return (time, *rate, *growth, *frame, x + 1j * y, z, magnitude / moments[0]), (a, b)
+    return (time, *rate, *growth, *frame, x, y, z, magnitude / moments[0]), (a, b)
 
 
 def stride(functions, constants, time, state):
@@ -69,7 +69,8 @@ def stride(functions, constants, time, state):
     from the reach alone falls short where the growth dominates, as the terms then fall like
     (reach / 2)^(k/2) / (k/2)! only.
     """
-    across, along, growth = constants[SPIN]
+    x, y, along, growth = constants[SPIN]
+    across = x + 1j * y
     along = along + growth * (time - constants[START])
     speed = functions.hypot(abs(across), along)
     # half the angle is at most (speed + |growth| length / 2) length / 2
@@ -130,17 +131,12 @@ def motion_of_one(functions, constants, unit, series, time, fraction):
                   for rate, growth in zip(constants[RATE], constants[GROWTH])))
 
 
-def rate_bound(constants, start, end):
-    """Return upper bounds of |w|, (k,), of bodies with constants (., k) between times (k,)."""
-    rate, growth = np.array(constants[RATE]), np.array(constants[GROWTH])
+def bounds(constants, start, end):
+    """Return upper bounds of |w| and |dw/dt|, (k,), of bodies (., k) between times (k,)."""
+    rate, growth = constants[RATE], constants[GROWTH]
     ends = (rate + growth * (np.where(np.isinf(time), 0.0, time) - constants[START])
             for time in (start, end))
     # the rate moves along a line, so it is largest at an end
-    bound = np.maximum(*(np.sqrt((vector * vector).sum(axis=0)) for vector in ends))
-    return np.where(np.isinf(end), np.inf, ROUNDING * bound)
-
-
-def rate_derivative_bound(constants, start, end):
-    """Return |dw/dt|, (k,), of bodies with constants (., k): the same at all times."""
-    growth = np.array(constants[GROWTH])
-    return ROUNDING * np.sqrt((growth * growth).sum(axis=0))
+    largest = np.maximum(*(np.sqrt((vector * vector).sum(axis=0)) for vector in ends))
+    return (np.where(np.isinf(end), np.inf, ROUNDING * largest),
+            ROUNDING * np.sqrt((growth * growth).sum(axis=0)))

@@ -111,18 +111,18 @@ class FixedAxisRotations:
         return ((p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h),
                 (x + elapsed * u, y + elapsed * v, z + elapsed * w))
 
-    def rate_bounds(self, indices, start, end):
-        """Return the largest |w| [rad/s] of bodies (k,) so long (k,) after their starts."""
-        speed = 2 * self._table[HALF_RATE, indices]
+    def bounds(self, indices, start, end):
+        """
+        Return the largest |w| [rad/s] and |dw/dt| [rad/s^2], (k,) each, of bodies (k,).
+
+        Between `start` and `end` (k,), times [s] since the bodies' own starts.
+        """
+        speed = (2 * ROUNDING) * self._table[HALF_RATE, indices]
         if not self._grows:
-            return np.abs(speed) * ROUNDING
+            return np.abs(speed, out=speed), np.zeros(len(speed))
+        growth = (4 * ROUNDING) * self._table[QUARTER_GROWTH, indices]
         # without growth, 0 times an infinite end is to be 0
-        growth = 4 * self._table[QUARTER_GROWTH, indices]
         end = np.where(growth == 0, 0.0, end)
         # the rate about the axis is linear, so its size is largest at an end
-        bound = np.maximum(np.abs(speed + growth * start), np.abs(speed + growth * end))
-        return bound * ROUNDING
-
-    def rate_derivative_bounds(self, indices):
-        """Return |dw/dt| [rad/s^2] of bodies (k,), (k,)."""
-        return np.abs(4 * ROUNDING * self._table[QUARTER_GROWTH, indices])
+        return np.maximum(abs(speed + growth * np.maximum(start, 0.0)),
+                          abs(speed + growth * end)), abs(growth)

@@ -176,19 +176,11 @@ class Flights:
 
         Rigorous for the times [s] between; infinite if `end` is and the rate grows for ever.
         """
-        bound = self._fixed_axis.rate_bounds(
-            indices, np.maximum(start - self._translations.start[indices], 0.0),
-            end - self._translations.start[indices])
-        for rotations in self._present():
-            rotations.write_rate_bounds(indices, start, end, bound)
-        return bound
+        return self._bounds(indices, start, end)[0]
 
     def rate_derivative_bound(self, indices, start, end):
         """Return upper bounds of |dw/dt|, (k,) [rad/s^2], in the same way as `rate_bound`."""
-        bound = self._fixed_axis.rate_derivative_bounds(indices)
-        for rotations in self._present():
-            rotations.write_rate_derivative_bounds(indices, start, end, bound)
-        return bound
+        return self._bounds(indices, start, end)[1]
 
     def vertex_acceleration_bound(self, indices, radius, start, end):
         """
@@ -197,10 +189,18 @@ class Flights:
         Of all material points within `radius` (k,) [m] of it: |w x (w x r) + dw/dt x r| is at
         most (|w|^2 + |dw/dt|) |r|.
         """
-        rate = self.rate_bound(indices, start, end)
-        return (rate * rate + self.rate_derivative_bound(indices, start, end)) * radius
+        rate, derivative = self._bounds(indices, start, end)
+        return (rate * rate + derivative) * radius
 
     # -- inside --------------------------------------------------------------------------------
+
+    def _bounds(self, indices, start, end):
+        """Return bounds of |w| [rad/s] and |dw/dt| [rad/s^2], (k,) each."""
+        began = self._translations.start[indices]
+        rate, derivative = self._fixed_axis.bounds(indices, start - began, end - began)
+        for rotations in self._present():
+            rotations.write_bounds(indices, start, end, rate, derivative)
+        return rate, derivative
 
     def _write_poses(self, time, indices, position, orientation):
         """Write poses of bodies (k,), a slice or None for all, as if all axes stayed."""

@@ -118,15 +118,11 @@ class FreeRotations:
             orientation[:, places], rate[:, places] = _motions(
                 form, columns, times[places] - columns[START])
 
-    def write_rate_bounds(self, indices, start, end, out):
-        """Write upper bounds of |w| to `out` (k,) for those of `indices` (k,) that are here."""
+    def write_bounds(self, indices, start, end, rate, derivative):
+        """Write upper bounds of |w| and |dw/dt|, (k,) each, at any time of bodies (k,)."""
         for _, places, columns in self._selected(indices):
-            out[places] = columns[RATE_BOUND]
-
-    def write_rate_derivative_bounds(self, indices, start, end, out):
-        """Write upper bounds of |dw/dt| to `out` (k,), as `write_rate_bounds`."""
-        for _, places, columns in self._selected(indices):
-            out[places] = columns[DERIVATIVE_BOUND]
+            rate[places] = columns[RATE_BOUND]
+            derivative[places] = columns[DERIVATIVE_BOUND]
 
     def motion_of_one(self, body, time):
         """Return quaternion and world rate of one body in plain floats."""

@@ -193,9 +193,25 @@ class _ManyProducts:
             one.append(value)
 
 
-def rate_bound(constants, start, end):
+def bounds(constants, start, end):
     """
-    Return upper bounds of |w|, (k,), of bodies with constants (., k) between times (k,).
+    Return upper bounds of |w| and |dw/dt|, (k,), of bodies (., k) between times (k,).
+
+    By Euler's equations |dw/dt| is at most the torque over the least moment and the products of
+    two rates with factors (I_j - I_k) / I_i, at most the largest of these times |w|^2 / sqrt 3.
+    """
+    moments, torque = constants[MOMENTS], constants[TORQUE]
+    rate = _rate_bounds(moments, constants[RATE], torque,
+                        np.maximum(start - constants[START], 0.0), end - constants[START])
+    i1, i2, i3 = moments
+    factor = np.max(np.abs(((i2 - i3) / i1, (i3 - i1) / i2, (i1 - i2) / i3)), axis=0)
+    push = np.sqrt(_square(torque)) / moments.min(axis=0)
+    return ROUNDING * rate, ROUNDING * (push + factor / sqrt(3) * rate * rate)
+
+
+def _rate_bounds(moments, rate, torque, start, end):
+    """
+    Return upper bounds of |w|, (k,), from rates (3, k) at the start, in body axes.
 
     Three hold, the least is returned. With f = 1 / moment: |w| <= f_max |L|, where L moves along
     a line. |w| <= sqrt(f_max) e, where e = sqrt(2 T) grows at most by |torque| sqrt(f_max) a
@@ -203,35 +219,20 @@ def rate_bound(constants, start, end):
     sum of L_i^2 f_i^2 for given sums L^2 of L_i^2 and e^2 of L_i^2 f_i is largest with all of
     L_i^2 at the two extreme f.
     """
-    moments, rate, torque = (np.array(constants[rows]) for rows in (MOMENTS, RATE, TORQUE))
     # without an end there is no bound; any finite time will do meanwhile
     for_ever = np.isinf(end)
-    elapsed = (np.maximum(start - constants[START], 0.0),
-               np.where(for_ever, start, end) - constants[START])
+    end = np.where(for_ever, start, end)
     most, least = 1 / moments.min(axis=0), 1 / moments.max(axis=0)
     # momentum and torque in the body's axes at the start: the directions do not matter here
     momentum = moments * rate
-    square = np.maximum(*(_square(momentum + torque * time) for time in elapsed))
+    square = np.maximum(_square(momentum + torque * start), _square(momentum + torque * end))
     push = _square(torque)
-    nearest = np.clip(-(momentum * torque).sum(axis=0) / push, *elapsed)
+    nearest = np.clip(-(momentum * torque).sum(axis=0) / push, start, end)
     smallest = _square(momentum + torque * nearest)
-    energy = (np.sqrt((momentum * rate).sum(axis=0)) + np.sqrt(push * most) * elapsed[1]) ** 2
-    bounds = most * most * square, most * energy, (most + least) * energy - most * least * smallest
-    bound = ROUNDING * np.sqrt(np.minimum(np.minimum(bounds[0], bounds[1]), bounds[2]))
-    return np.where(for_ever, np.inf, bound)
-
-
-def rate_derivative_bound(constants, start, end):
-    """
-    Return upper bounds of |dw/dt|, (k,), as `rate_bound`.
-
-    Euler's equations: the torque over the least moment, and the products of two rates with factors
-    (I_j - I_k) / I_i, at most the largest of these times |w|^2 / sqrt 3.
-    """
-    i1, i2, i3 = moments = np.array(constants[MOMENTS])
-    factor = np.max(np.abs(((i2 - i3) / i1, (i3 - i1) / i2, (i1 - i2) / i3)), axis=0)
-    push = np.sqrt(_square(np.array(constants[TORQUE]))) / moments.min(axis=0)
-    return ROUNDING * (push + factor / sqrt(3) * rate_bound(constants, start, end) ** 2)
+    energy = (np.sqrt((momentum * rate).sum(axis=0)) + np.sqrt(push * most) * end) ** 2
+    least_bound = np.minimum(np.minimum(most * most * square, most * energy),
+                             (most + least) * energy - most * least * smallest)
+    return np.where(for_ever, np.inf, np.sqrt(least_bound))
 
 
 def _square(vector):
