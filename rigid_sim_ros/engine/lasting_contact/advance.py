@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.contacts import Contacts
 from rigid_sim_ros.engine.lasting_contact import cut, scales as units
+from rigid_sim_ros.engine.lasting_contact.automaton import OnPlane, plane_of
 from rigid_sim_ros.engine.lasting_contact.rest import at_rest
 from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits, push_out, second_half
 
@@ -48,9 +48,32 @@ def advance_island(island, state, start, duration):
     Advance an `Island` by `duration` [s] from time `start` [s] and return its `Outcome`.
 
     The members' columns of `state` (a `State` of the whole scene) are replaced. Impacts are noted
-    in the world's log, at their instants. The duration is one step, or equal parts if something
-    is so fast that it could pass through something thin.
+    in the world's log, at their instants. One body on one plane moves as a hybrid automaton, of
+    high order (see `automaton`). For all else the duration is one step, or equal parts if
+    something is so fast that it could pass through something thin.
     """
+    found = _on_plane(island, state, start, duration) if island.member_count == 1 else None
+    if found is None:
+        found = _stepped(island, state, start, duration)
+    touching, resting = found
+    touched = np.zeros(island.bodies.count, dtype=bool)
+    touched[touching.body_a] = touched[touching.body_b] = True
+    return Outcome(resting, touched[:island.member_count], touching)
+
+
+def _on_plane(island, state, start, duration):
+    """Return (closed contacts, resting) of one body on one plane, or None."""
+    pair = plane_of(island, state, duration)
+    if pair is None:
+        return None
+    if pair not in island.automata:
+        island.automata[pair] = OnPlane(island, pair)
+    island.world.work.contact_steps += 1
+    return island.automata[pair].advance(state, start, duration)
+
+
+def _stepped(island, state, start, duration):
+    """Return (closed contacts, resting) after steps."""
     free = island.free_motion(state)
     scales = island.scales(free)
     motion = island.gather(state)
@@ -64,12 +87,8 @@ def advance_island(island, state, start, duration):
         island.world.work.contact_steps += 1
     touching = contacts.select(np.flatnonzero(contacts.separation < limits.touch_gap))
     resting = at_rest(island, free, scales, motion, touching)
-    if resting:
-        motion = motion.stopped()
-    island.scatter(motion, state)
-    touched = np.zeros(island.bodies.count, dtype=bool)
-    touched[touching.body_a] = touched[touching.body_b] = True
-    return Outcome(resting, touched[:island.member_count], touching)
+    island.scatter(motion.stopped() if resting else motion, state)
+    return touching, resting
 
 
 def _advance(island, free, scales, limits, motion, contacts, time, step):
@@ -118,18 +137,10 @@ def _separated(island, motion, contacts, overlap, margin):
 
 def _parts(island, free, motion, duration):
     """Return how many parts a step needs so that nothing passes half of what is thinnest."""
-    bodies = island.bodies
-    extents = bodies.half_extents
+    extents = island.bodies.half_extents
     # nothing passes through a plane unseen: it has no other side
     thickness = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
-    radius = np.where(np.isfinite(bodies.bounding_radius), bodies.bounding_radius, 0.0)
-    reach = duration * (_length(motion.linear) + radius * _length(motion.angular)
-                        + duration * _length(free.acceleration))
+    reach = island.reach(free, motion, duration)
     a, b = island.pairs.pairs_a, island.pairs.pairs_b
     needed = (reach[a] + reach[b]) / np.minimum(thickness[a], thickness[b])
     return int(min(max(1.0, np.ceil(needed.max(initial=0.0))), _MOST_PARTS))
-
-
-def _length(vectors):
-    """Return the lengths (n,) of vectors (3, n)."""
-    return np.sqrt(rotation.dot(vectors, vectors))

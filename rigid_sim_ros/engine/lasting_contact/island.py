@@ -24,6 +24,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
@@ -52,6 +53,8 @@ class Island:
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
+        self.automata = {}
+        """What has been set up for one member on one plane, by the place of the pair."""
 
     @property
     def member_count(self):
@@ -87,6 +90,13 @@ class Island:
                 ('linear_velocity', motion.linear), ('angular_velocity', motion.angular)):
             state.change(quantity, self.members, columns[:, :count])
 
+    def reach(self, free, motion, duration):
+        """Return how far [m] any point of the bodies (n,) comes in a time [s] without impacts."""
+        radius = self.bodies.bounding_radius
+        radius = np.where(np.isfinite(radius), radius, 0.0)
+        return duration * (_length(motion.linear) + radius * _length(motion.angular)
+                           + duration * _length(free.acceleration))
+
     def find_contacts(self, motion, margin):
         """Return the contacts (own columns) with gaps below a margin [m]."""
         self.world.work.narrow_phases += len(self.pairs.pairs_a)
@@ -112,3 +122,8 @@ def _own_bodies(bodies, columns, member_count):
         inertia=np.where(mobile, bodies.inertia[:, columns], 1.0),
         inverse_inertia=bodies.inverse_inertia[:, columns] * mobile,
         restitution=bodies.restitution[columns], friction=bodies.friction[columns])
+
+
+def _length(vectors):
+    """Return the lengths (n,) of vectors (3, n)."""
+    return np.sqrt(rotation.dot(vectors, vectors))

@@ -79,7 +79,7 @@ class FreeMotion:
 
     def __init__(self, bodies, acceleration, torque):
         self.acceleration = acceleration
-        self._torque = torque
+        self.torque = torque
         self._inertia = bodies.inertia
         self._inverse_inertia = bodies.inverse_inertia
         moments = bodies.inertia[:, :bodies.moving_count]
@@ -91,7 +91,7 @@ class FreeMotion:
             return np.zeros_like(motion.angular)
         turn = rotation.matrix(motion.orientation)
         rate = rotation.transform_transposed(turn, motion.angular)
-        torque = (rotation.transform_transposed(turn, self._torque)
+        torque = (rotation.transform_transposed(turn, self.torque)
                   - rotation.cross(rate, self._inertia * rate))
         return rotation.transform(turn, self._inverse_inertia * torque)
 
@@ -118,7 +118,7 @@ class FreeMotion:
             before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
             given = start.angular + struck.angular - kicked.angular
             momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
-                before, given)) + time * self._torque
+                before, given)) + time * self.torque
             angular = rotation.transform(after, self._inverse_inertia
                                          * rotation.transform_transposed(after, momentum))
         return Motion(position, orientation, struck.linear + 0.5 * time * self.acceleration,

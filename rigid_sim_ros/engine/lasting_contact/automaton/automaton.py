@@ -1,0 +1,123 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+One body on one plane as a hybrid automaton, of high order between its events.
+
+Between events the points in contact are a fixed set: the forces on them solve the contact problem
+of accelerations in every stage of an adaptive Runge-Kutta step, so that pressure that vanishes and
+sliding that begins need no event. Events are located in time: a point touches, and all that touch
+are hit together; sliding ends, and the point may stick.
+"""
+
+from rigid_sim_ros.engine.lasting_contact.automaton import events
+from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import ContactState
+from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
+from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized
+
+TOLERANCE = 1e-9
+"""Of length, speed and angle: the error allowed in a step."""
+
+BALANCE = 1e-12
+"""Of the acceleration scale: what is no more than the rounding of forces in balance."""
+
+LONGEST = 0.01
+"""Longest step [s], times the root of the length in metres."""
+
+MOST_STEPS = 1000
+"""In one call; more are not worth it."""
+
+
+class Automaton(ContactState):
+    """A body in motion; arguments as for `ContactState`."""
+
+    def __init__(self, body, state, closed, scales, stick, restitution, law):
+        """See the class."""
+        super().__init__(body, state, closed, scales, stick, restitution, law)
+        self.steps = 0
+        self._longest = LONGEST * scales.length ** 0.5
+        rate = scales.speed / scales.length
+        self._weights = [1 / (TOLERANCE * unit) for unit in (
+            *[scales.length] * 3, *[1.0] * 4, *[scales.speed] * 3, *[rate] * 3)]
+
+    def advance(self, duration):
+        """Advance by `duration` [s]; return whether all of it was done."""
+        size = self._longest
+        rates = self.begin()
+        still = BALANCE * self.scales.acceleration
+        while (left := duration - self.time) > 1e-13 * duration:
+            if self.steps > MOST_STEPS:
+                return False
+            if not any(self.state[7:]) and self._balanced(rates, still):
+                self.time = duration
+                break
+            step, event, size = self._step(rates, min(size, left))
+            # the end is met exactly, not by adding up
+            self.time = duration if step.size == left else self.time + step.size
+            self.state = normalized(step.end)
+            rates = step.last
+            self.rearm()
+            if event is not None:
+                event()
+                rates = self.begin()
+            elif self.lifting() or self.drifting():
+                rates = self.begin()
+        return True
+
+    def resting(self, slow, allowed):
+        """
+        Return whether the body is at rest.
+
+        That is: no point moves faster than `slow` [m/s], and without that motion none would be
+        accelerated by more than `allowed` [m/s^2]. What turns at its turning point is not.
+        """
+        vx, vy, vz, wx, wy, wz = map(abs, self.state[7:])
+        if max(vx, vy, vz, self.body.radius * max(wx, wy, wz)) > slow or not self.closed:
+            return False
+        return self._balanced(self.rates([*self.state[:7], *[0.0] * 6]), allowed)
+
+    def _balanced(self, rates, allowed):
+        """Return whether the accelerations [m/s^2] in the rates are no more than allowed."""
+        return (max(map(abs, rates[7:10])) <= allowed
+                and self.body.radius * max(map(abs, rates[10:])) <= allowed)
+
+    def _step(self, rates, size):
+        """Return (step, event at its end or None, size of the next) of at most `size` [s]."""
+        started = self.solved
+        while True:
+            self.steps += 1
+            step = Step(self.rates, self.state, rates, size)
+            error = max(map(_weighted, step.error(), self._weights))
+            if error > 1.0 and self.steps <= MOST_STEPS:
+                size *= max(0.2, 0.9 * error ** -0.2)
+                continue
+            following = min(size * (4.0 if error < 1e-4 else 0.9 * error ** -0.2), self._longest)
+            time, event, too_long = events.first(self, started, step)
+            if too_long and self.steps <= MOST_STEPS:
+                size *= 0.5
+                continue
+            if event is None:
+                return step, None, following
+            if time < size:
+                step = Step(self.rates, self.state, rates, time)
+            return step, event, following
+
+    def settle(self):
+        """Stop what slides slowly: sliding has ended."""
+        self.hold(self.closed, True)
+
+
+def _weighted(error, weight):
+    """Return an error in units of what is allowed."""
+    return abs(error) * weight

@@ -1,0 +1,164 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What happens within a step of the automaton: what comes first, and when."""
+
+from math import hypot
+
+from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import dot, SPIN
+
+_TURNED = 0.5
+"""Cosine of how far the direction of sliding may turn in a step."""
+
+_EARLIEST = 1e-6
+"""Of a step: what has not risen by then does not rise."""
+
+_AT_ZERO = 1e-9
+"""Of a function's value at the end of a step: what is as good as zero at its start."""
+
+_ROUNDS = 60
+_ROUNDING = 1e-15
+
+
+def first(automaton, started, step):
+    """
+    Return (time [s], event or None, too_long) of what happens first in a `Step`.
+
+    The event is a method of the automaton, to be called in the state at that time. `too_long` says
+    that the step must be shortened before anything can be said. `started` is what the automaton
+    had solved at the start of the step.
+    """
+    found = []
+    between = None
+    for point, end in _touching(automaton, step):
+        between = between or step.interpolant()
+        level = automaton.level(point)
+        found.append((_crossing(
+            lambda time, point=point: automaton.body.gaps(between(time))[point] - level, end),
+            automaton.land))
+    for which, point, direction in _stopping(automaton, started):
+        if direction is None:
+            return step.size, None, True
+        velocity = automaton.solved[1][which]
+        if dot((*direction, 0.0), velocity) > 0.0:
+            found.append((step.size, automaton.settle))
+            continue
+        between = between or step.interpolant()
+
+        def along(time, point=point, direction=direction):
+            return dot((*direction, 0.0), _velocity(automaton.body, between(time), point))
+
+        time = _crossing(along, step.size)
+        x, y, _ = _velocity(automaton.body, between(time), point)
+        if not automaton.slow(hypot(x, y)):
+            return step.size, None, True
+        found.append((time, automaton.settle))
+    if not found:
+        return step.size, None, False
+    return (*min(found, key=lambda each: each[0]), False)
+
+
+def _touching(automaton, step):
+    """Return (point, time [s] at which it is below its level) for the points that touch."""
+    body = automaton.body
+    after = body.gaps(step.end)
+    spin = step.start[SPIN]
+    # a point that is low at neither end is not low between, by more than it can fall and rise
+    reach = 0.25 * step.size ** 2 * (
+        dot(body.acceleration, body.acceleration) ** 0.5 + dot(spin, spin) * body.radius)
+    if min(after) > reach:
+        return []
+    before = body.gaps(step.start)
+    found = []
+    for point in body.points:
+        if point in automaton.closed:
+            continue
+        if after[point] < automaton.level(point):
+            if after[point] < before[point]:
+                found.append((point, step.size))
+        elif min(before[point], after[point]) < reach:
+            time = _lowest(body, step, point, before[point], after[point])
+            if time is not None and body.gaps(
+                    step.interpolant()(time))[point] < automaton.level(point):
+                found.append((point, time))
+    return found
+
+
+def _lowest(body, step, point, before, after):
+    """Return when in a step a point that falls and rises is lowest [s], or None."""
+    falling = _velocity(body, step.start, point)[2]
+    rising = _velocity(body, step.end, point)[2]
+    if falling >= 0.0 or rising <= 0.0:
+        return None
+    # the height is nearly a parabola, so its rate is nearly linear
+    return step.size * falling / (falling - rising)
+
+
+def _stopping(automaton, started):
+    """
+    Return (place among the closed points, point, direction) of those whose sliding ends.
+
+    The direction is None where it has turned too far in the step to tell.
+    """
+    _, _, slips_before, *_ = started
+    _, velocities, slips_after, *_ = automaton.solved
+    found = []
+    for which, direction in enumerate(slips_before):
+        if direction is None:
+            continue
+        x, y, _ = velocities[which]
+        along = x * direction[0] + y * direction[1]
+        if along < 0.0 or slips_after[which] is None:
+            found.append((which, automaton.closed[which], direction))
+        elif along < _TURNED * hypot(x, y):
+            found.append((which, automaton.closed[which], None))
+    return found
+
+
+def _velocity(body, state, point):
+    """Return the velocity (3,) [m/s] of a point."""
+    return body.velocities(state, body.arms(body.turn(state), (point,)))[0]
+
+
+def _crossing(function, end):
+    """
+    Return where in [0, end] a function that ends negative becomes so.
+
+    What starts at zero or below, as a point does that has just been hit, must first have risen:
+    that is looked for towards the start. If it has not, the answer is the start.
+    """
+    low, high = 0.0, end
+    value_low, value_high = function(low), function(high)
+    if value_high >= 0.0:
+        return end
+    while value_low <= -_AT_ZERO * value_high:
+        low = 0.5 * (high if low == 0.0 else low)
+        if low < _EARLIEST * end:
+            return 0.0
+        value_low = function(low)
+    side = 0
+    for _ in range(_ROUNDS):
+        middle = (low * value_high - high * value_low) / (value_high - value_low)
+        value = function(middle)
+        if value == 0.0 or high - low <= _ROUNDING * end:
+            break
+        if value > 0.0:
+            low, value_low = middle, value
+            value_high *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            high, value_high = middle, value
+            value_low *= 0.5 if side == -1 else 1.0
+            side = -1
+    return middle
