@@ -146,6 +146,7 @@ def test_list(capsys):
     (['slide', '--repeats', '0'], '--repeats 0; allowed: 1 or more'),
     (['slide', '--timeout', '0'], '--timeout 0; allowed: a positive number'),
     (['tosses', 'none.npz'], 'none.npz is not an archive of tosses: '),
+    (['tosses', 'none.npz', '--count', '0'], '--count 0; allowed: 1 or more'),
     (['tosses', 'none.npz', '--restitutions', '2'], '--restitutions 2; allowed: 0 to 1')])
 def test_what_cannot_be_run_is_refused_in_one_line(arguments, expected, capsys):
     assert main(arguments) == 2

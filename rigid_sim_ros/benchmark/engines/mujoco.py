@@ -53,8 +53,8 @@ class Mujoco(Engine):
 
     Elliptic cones with `impratio` 10 are what the manual advises against creep. MuJoCo has no
     coefficient of restitution: `solver_reference`. Where there is no friction contacts have one
-    row instead of three. Constant forces are `xfrc_applied`. MuJoCo mixes frictions its own way, so
-    where materials differ each pair of bodies is given what the scene file's rule says.
+    row instead of three. Constant forces are `xfrc_applied`. MuJoCo mixes frictions its own way,
+    so where materials differ each pair of bodies is given what the scene file's rule says.
     """
 
     integrator = mujoco.mjtIntegrator.mjINT_EULER

@@ -156,7 +156,7 @@ GROUND_MIX, BALL_MIX = 0.4, 0.8
 
 
 def carried_scene():
-    """Return a box that is pushed along the ground with 25 balls on it (SimBenchmark's rolling)."""
+    """Return a box pushed along the ground with 25 balls on it, as in SimBenchmark's rolling."""
     base_friction = 0.8
     materials = {name: {'restitution': 0.0, 'friction': mixed ** 2 / base_friction}
                  for name, mixed in (('ground', GROUND_MIX), ('ball', BALL_MIX))}
@@ -175,7 +175,7 @@ def carried_errors(trajectory):
     """
     Compare with balls that roll: each has 2/7 of the box's acceleration.
 
-    So the box carries 2/7 of their mass: a = (F - mu g (M + m)) / (M + 2/7 m), with m of all balls.
+    So the box carries 2/7 of their mass: a = (F - mu g (M + m)) / (M + 2/7 m), m of all balls.
     """
     mass = BALLS * BALLS * 1.0
     acceleration = ((PUSH - GROUND_MIX * GRAVITY * (BASE_MASS + mass))

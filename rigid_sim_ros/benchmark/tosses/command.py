@@ -36,6 +36,10 @@ from tqdm import tqdm
 FRICTIONS = (0.14, 0.16, 0.17, 0.18, 0.19, 0.2, 0.22)
 RESTITUTIONS = (0.0, 0.1, 0.15, 0.2, 0.3, 0.4)
 
+STEPS_A_SAMPLE = {'exact': 1, 'rapier': 1}
+"""Steps between two samples, where 10 are not better: contact and impacts are not first order, or
+the substeps are enough."""
+
 REACH = 10.0
 """[m]. A toss that goes further has blown up."""
 
@@ -56,8 +60,8 @@ def add_options(parser):
     parser.add_argument('data', type=Path, metavar='DATA.npz', help='measured tosses')
     parser.add_argument('--engines', nargs='+', metavar='ENGINE', default=['exact'],
                         help='names of engines (default exact)')
-    parser.add_argument('--steps-a-sample', type=int, default=10, metavar='N',
-                        help='steps between two samples (%(default)s)')
+    parser.add_argument('--steps-a-sample', type=int, metavar='N',
+                        help='steps between two samples (1 for exact and rapier, 10 for others)')
     parser.add_argument('--frictions', type=float, nargs='+', default=FRICTIONS, metavar='MU')
     parser.add_argument('--restitutions', type=float, nargs='+', default=RESTITUTIONS,
                         metavar='E', help='values to choose from; one of each: no fit')
@@ -90,7 +94,8 @@ def _run_engine(name, worker, tosses, starts, grid, options):
     tried, failures = [], []
     for parameters in tqdm(grid, desc=name, unit='set', file=sys.stderr, leave=False,
                            disable=None):
-        tasks = [_task(toss, start, parameters, options) for toss, start in zip(tosses, starts)]
+        tasks = [_task(name, toss, start, parameters, options)
+                 for toss, start in zip(tosses, starts)]
         try:
             tried.append((parameters, [_scored(worker, toss, start, task, options.timeout)
                                        for toss, start, task in zip(tosses, starts, tasks)]))
@@ -102,7 +107,8 @@ def _run_engine(name, worker, tosses, starts, grid, options):
     if not tried:
         return
     fit = best_fit(tried)
-    tasks = [_task(toss, start, fit.parameters, options) for toss, start in zip(tosses, starts)]
+    tasks = [_task(name, toss, start, fit.parameters, options)
+             for toss, start in zip(tosses, starts)]
     once = TimingPlan(repeats=1, least_time=0.0, budget=options.timeout)
     time = sum(worker.ask(task, once, 2 * options.timeout).run for task in tasks)
     print(f'{title:20}{_text(fit.parameters):24}{_figures(fit.fitted)}{time:14.3g}')
@@ -110,9 +116,9 @@ def _run_engine(name, worker, tosses, starts, grid, options):
         print(f'{"":20}{"  unseen halves":24}{_figures(fit.unseen)}', flush=True)
 
 
-def _task(toss, start, parameters, options):
+def _task(engine, toss, start, parameters, options):
     """Return the task of a worker: scene, step, whether bodies may sleep, times."""
-    step = float(toss.times[1]) / options.steps_a_sample
+    step = float(toss.times[1]) / (options.steps_a_sample or STEPS_A_SAMPLE.get(engine, 10))
     cube = {'name': 'cube', 'cube': {'edge': toss.edge}, 'mass': toss.mass,
             'inertia': toss.moment, 'position': start.position.tolist(),
             'orientation': start.orientation.tolist(), 'velocity': start.velocity.tolist(),
@@ -144,8 +150,8 @@ def _text(parameters):
 def _check(options):
     """Raise `BenchmarkError` for options that cannot be carried out."""
     for name, value in (('--steps-a-sample', options.steps_a_sample),
-                        ('--count', options.count or 1)):
-        if value < 1:
+                        ('--count', options.count)):
+        if value is not None and value < 1:
             raise BenchmarkError(f'{name} {value}; allowed: 1 or more')
     if not options.length_scale > 0:
         raise BenchmarkError(f'--length-scale {options.length_scale:g}; allowed: above 0')
