@@ -57,7 +57,7 @@ def margin_of_common_points(scene, a, b, position, rotations):
 
 
 def test_overlap_agrees_with_a_linear_program_on_pairs_of_all_kinds():
-    scene, a, b, position, orientation, scale = random_box_pairs(np.random.default_rng(1), 400)
+    scene, a, b, position, orientation, scale = random_box_pairs(np.random.default_rng(1), 250)
     found = separations(scene, a, b, position, orientation)
     rotations = matrix(orientation)
     overlapping = 0
@@ -66,7 +66,7 @@ def test_overlap_agrees_with_a_linear_program_on_pairs_of_all_kinds():
         if abs(margin) > 1e-6 * scale[pair]:
             assert (found[pair] > 0) == (margin > 0), pair
             overlapping += margin < 0
-    assert 100 < overlapping < 300
+    assert 60 < overlapping < 190
 
 
 def test_distance_and_depth_are_those_of_the_hull_of_all_vertex_differences():
@@ -121,7 +121,7 @@ def test_long_rods_that_cross_at_a_small_angle_are_apart(angle):
     assert found == pytest.approx([gap], abs=1e-14)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2 ** 32 - 1), thin=st.floats(0.01, 1), unit=st.floats(1e-3, 1e3))
 def test_the_frame_the_unit_and_the_order_do_not_matter(seed, thin, unit):
     rng = np.random.default_rng(seed)
