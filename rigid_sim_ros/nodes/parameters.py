@@ -108,8 +108,8 @@ PARAMETERS = (
     Row('world_frame', 'world', 'frame_id of everything published', read_only=True),
     Row('publish_clock', True, 'publish simulated time on `/clock`; if not set, only while '
         'nobody else does'),
-    Row('publish_tf', False, 'publish the poses on `/tf` too, the bodies\' names as frames; needs '
-        'tf2_msgs', read_only=True),
+    Row('publish_tf', False, 'publish the poses on `/tf` too, with the names of bodies as frames; '
+        'needs tf2_msgs', read_only=True),
     Row('reliability', 'reliable', 'quality of service of poses, states and markers',
         choices=('reliable', 'best_effort'), read_only=True),
     Row('executor', AUTO, 'executor of the callbacks; auto: the events executor if there is one',

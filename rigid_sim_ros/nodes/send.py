@@ -40,8 +40,8 @@ def main(arguments=None):
     """Send one message; returns the exit code: 0, 1 if nobody takes it, 2 if it is wrong."""
     parser = argparse.ArgumentParser(
         'rigid_sim_send', description='Send one message to a topic.',
-        epilog="example: rigid_sim_send /rigid_sim/cmd_vel geometry_msgs/msg/TwistStamped "
-               "'{header: {frame_id: cube_1}, twist: {linear: {z: 3.0}}}'")
+        epilog='example: rigid_sim_send /rigid_sim/cmd_vel geometry_msgs/msg/TwistStamped '
+               '"{header: {frame_id: cube_1}, twist: {linear: {z: 3.0}}}"')
     parser.add_argument('topic', help='its full name')
     parser.add_argument('type', help='of the messages, e.g. geometry_msgs/msg/TwistStamped')
     parser.add_argument('message', help='as YAML; what is not given is zero')

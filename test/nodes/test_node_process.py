@@ -76,7 +76,7 @@ BAD_SCENES = {
     'no such name': (None, 'no_such_scene', ['no_such_scene', 'ten_cubes']),
     'no such file': (None, '/nowhere/scene.yaml', ['/nowhere/scene.yaml']),
     'unknown key': ('bodies:\n  - {name: a, cube: {edge: 1}, mass: 1, colour: red}\n', None,
-                    ["a", 'colour']),
+                    ['a', 'colour']),
     'NaN': ('bodies:\n  - {name: a, cube: {edge: .nan}, mass: 1}\n', None, ['a', 'edge', 'nan']),
     'negative mass': ('bodies:\n  - {name: a, cube: {edge: 1}, mass: -1}\n', None,
                       ['a', 'mass', '-1']),

@@ -14,7 +14,7 @@
 
 """One body on one plane: closed forms of sliding, tipping, spinning; throws that come to rest."""
 
-from island_run import body, GRAVITY, ground, IslandRun
+from island_run import body, GRAVITY, IslandRun
 
 import numpy as np
 
@@ -47,7 +47,7 @@ def test_sliding_to_rest(friction):
 
 
 def test_spinning_on_a_face():
-    """At 5 rad/s: all corners slide at the same distance, torque mu m g r, w^2 / (2 torque / I)."""
+    """At 5 rad/s: all corners slide at one distance, torque mu m g r, w^2 / (2 torque / I)."""
     run = IslandRun([cube(angular_velocity=(0, 0, 5))], friction=0.3)
     assert run.run_to_rest(3.0) is not None
     _, _, z, w = run.state.orientation[:, 0]
@@ -194,7 +194,7 @@ def test_thrown_boxes_come_to_rest(size, restitution, friction, law):
 
 
 def test_names_of_corners_do_not_matter():
-    """A cube turned in its own axes before the throw is the same cube: it rests in the same place."""
+    """A cube turned in its own axes before the throw is the same cube: it rests there too."""
     half = np.sqrt(0.5)
     places = []
     for turn in ((0, 0, 0, 1), (0, 0, half, half), (half, 0, 0, half), (0.5, 0.5, 0.5, 0.5)):
@@ -232,7 +232,7 @@ def test_bounces_to_rest_end_when_the_series_ends():
 
 
 def test_forces_of_patterns_are_those_of_the_general_solver():
-    """The closed forms against the general contact problem: face and edge, sticking and sliding."""
+    """Closed forms against the general contact problem: face and edge, sticking and sliding."""
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.4, 0.4) for z in (-0.3, 0.3)]
     for spin, slips in (((0.0, 0.0, 0.0), [None] * 4),
                         ((0.0, 0.0, 1.0), [(0.6, 0.8), (0.8, -0.6), (1.0, 0.0), (0.0, -1.0)]),

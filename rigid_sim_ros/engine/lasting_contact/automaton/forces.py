@@ -49,7 +49,9 @@ def contact_forces(body, turn, arms, free, slips):
     Parameters
     ----------
     body : PlaneBody
-    turn : rotation matrix of its state
+        The body on the plane.
+    turn : rotation matrix
+        Of its state.
     arms, free : lists of (3,)
         Of the points in contact: from the centre [m], and the acceleration without contact
         [m/s^2].
@@ -66,7 +68,7 @@ def contact_forces(body, turn, arms, free, slips):
 
 
 def accelerations(body, turn, arms, forces):
-    """Return the linear and angular accelerations (3,) due to forces at points."""
+    """Return the linear and angular acceleration, (3,) each, due to forces at points."""
     total = [sum(part) for part in zip(*forces)]
     torque = [sum(part) for part in zip(*(cross(r, f) for r, f in zip(arms, forces)))]
     m = body.inverse_mass
@@ -75,10 +77,10 @@ def accelerations(body, turn, arms, forces):
 
 def held(body, turn, arms, motion, sticks):
     """
-    Return the change of linear and angular motion (3,) that stops points: of all the motion along
-    the normal, of those that stick all of it; or None if that stops the body altogether.
+    Return the change of linear and angular motion (3,) that stops points.
 
-    The change is the least in the metric of mass: it can only take energy.
+    Of all the motion along the normal, of those that stick all of it; or None if that stops the
+    body altogether. The change is the least in the metric of mass: it can only take energy.
     """
     sticking = [point for point, stick in enumerate(sticks) if stick]
     if len(arms) > 2 and len(sticking) > 1:

@@ -35,8 +35,11 @@ def constrained(body, state, turn, points, arms, slips, linear, angular):
     Parameters
     ----------
     body : PlaneBody
+        The body on the plane.
     state : list of 13 floats
-    turn : rotation matrix of the state
+        Its pose and velocities.
+    turn : rotation matrix
+        Of the state.
     points, arms : lists of int, of (3,) [m]
         The points in contact, and where they are from the centre.
     slips : list of (2,) or None
