@@ -36,7 +36,7 @@ COSINE, SINE, HALF_RATE, QUARTER_GROWTH, RATE, GROWTH = (
 """Rows of the table; what the cosine and the sine of the half angle multiply come first."""
 
 
-BLOCK = 8192
+BLOCK = 4096
 """Bodies evaluated at a time: what they need then stays in a core's own cache."""
 
 ROUNDING = 1 + 1e-12

@@ -148,24 +148,28 @@ class _Products:
     """Series of one body and the convolutions of their last orders, in plain floats."""
 
     def __init__(self, a, b, across, along):
-        self._all = [[a], [b], [a.conjugate()], [across], [across.conjugate()], [along]]
-
-    @property
-    def series(self):
-        """Those of the pair and of the rates."""
-        return [self._all[one] for one in (A, B, ACROSS, ALONG)]
+        self.series = [a], [b], [across], [along]
+        self._conjugate_a, self._conjugate_across = [a.conjugate()], [across.conjugate()]
+        # highest order first: what the others are multiplied by, term by term
+        self._backward = [a], [b], [across], [along]
 
     def last(self):
         """Return the next coefficients of the products `LEFT` times `RIGHT`."""
-        backward = [one[::-1] for one in self._all]
-        return [sum(map(mul, self._all[left], backward[right]))
-                for left, right in zip(LEFT, RIGHT)]
+        _, _, across, along = self.series
+        back_a, back_b, back_across, back_along = self._backward
+        conjugate_a = self._conjugate_a
+        return (sum(map(mul, along, back_a)), sum(map(mul, self._conjugate_across, back_b)),
+                sum(map(mul, across, back_a)), sum(map(mul, along, back_b)),
+                sum(map(mul, across, back_along)), sum(map(mul, across, back_across)),
+                sum(map(mul, conjugate_a, back_b)), sum(map(mul, conjugate_a, back_a)))
 
     def append(self, a, b, across, along):
         """Add an order."""
-        values = (a, b, a.conjugate(), across, across.conjugate(), along)
-        for one, value in zip(self._all, values):
-            one.append(value)
+        for forward, backward, value in zip(self.series, self._backward, (a, b, across, along)):
+            forward.append(value)
+            backward.insert(0, value)
+        self._conjugate_a.append(a.conjugate())
+        self._conjugate_across.append(across.conjugate())
 
 
 class _ManyProducts:
