@@ -102,9 +102,16 @@ class PublishGrid:
         """Begin a grid of `rate` [Hz] at `origin` [ns], which is itself on the grid."""
         self._rate = rate
         self._origin = origin
+        self._asked = self._answer = None
 
     def after(self, time):
         """Return the first time on the grid later than `time` [ns]."""
+        # asked again and again while the same state is waited for
+        if time != self._asked:
+            self._asked, self._answer = time, self._after(time)
+        return self._answer
+
+    def _after(self, time):
         number = int((time - self._origin) * self._rate / NANOSECONDS)
         while self._at(number) > time:
             number -= 1

@@ -14,7 +14,6 @@
 
 """Stopping on SIGINT and SIGTERM: once, in order, whatever is pressed how often."""
 
-from contextlib import contextmanager
 import signal
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -44,6 +43,7 @@ class StopRequest:
     def __init__(self):
         self.requested = False
         self._breakable = False
+        self._patience = PATIENCE
 
     def install(self):
         """Take over the signals; only the main thread can."""
@@ -62,14 +62,20 @@ class StopRequest:
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
-    @contextmanager
     def breakable(self, patience=PATIENCE):
-        """Let `Interrupted` be raised in the block, `patience` [s] after a stop is requested."""
-        self._breakable, self._patience = True, patience
-        try:
-            yield
-        finally:
-            self._breakable = False
+        """
+        Return what lets `Interrupted` be raised in a `with` block, so long [s] after a stop.
+
+        It is this itself: the block is entered with every state, so it has to cost nothing.
+        """
+        self._patience = patience
+        return self
+
+    def __enter__(self):
+        self._breakable = True
+
+    def __exit__(self, *exception):
+        self._breakable = False
 
     def _request(self, number, frame):
         if not self.requested:
