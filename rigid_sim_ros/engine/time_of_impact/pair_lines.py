@@ -232,10 +232,10 @@ class PairLines:
 
     def __call__(self, pairs, time):
         """Return the `Lines` of pairs, (q,) int, at times (q,) [s]."""
-        return self._lines(*self._at(pairs, time))
+        return self._lines(*self.sides(pairs, time))
 
-    def _at(self, pairs, time):
-        """Return both sides of the pairs at these times."""
+    def sides(self, pairs, time):
+        """Return the `Side`s a and b of pairs, (q,) int, at times (q,) [s]."""
         count = len(self._sides[0].index)
         both = np.concatenate((pairs, pairs + count))
         a, b = (side.select(pairs) for side in self._sides)
