@@ -33,6 +33,9 @@ KEPT_STRIDES = 16
 FEW = 8
 """Up to so many bodies, strides are made one by one in plain floats: faster, measured."""
 
+MOST_STRIDES = 200_000
+"""Strides of the latest length that one request may need: a few seconds or tens of them."""
+
 BEGIN, END, SCALE = 0, 1, 2
 """Rows of the table: times [s] of a stride, one over its unit, then what the law keeps."""
 
@@ -77,7 +80,17 @@ class Chain:
         """Return the number of the stride that holds `time`, extending the chain to it."""
         while self.times[-1] <= time:
             self.stride(len(self.times) - 1)
+            self.refuse_endless(time)
         return self.locate(time)
+
+    def refuse_endless(self, time):
+        """Raise OverflowError if the chain would need too many strides more to reach `time`."""
+        last = self.times[-1] - self.times[-2]
+        if time - self.times[-1] > MOST_STRIDES * last:
+            raise OverflowError(
+                f'a rotation under torque is too fast to be followed to {time} s: it turns by '
+                f'about a radian in {last} s at {self.times[-1]} s, and at most {MOST_STRIDES} '
+                'times as long is allowed at once')
 
 
 class DrivenRotations:
@@ -224,9 +237,10 @@ class DrivenRotations:
         for place, (chain, number, last) in enumerate(zip(chains, numbers, states)):
             if number == len(chain.times) - 1:
                 chain.append(ends[place], last)
+                chain.refuse_endless(time)
             ends[place] = chain.times[number + 1]
         end = np.array(ends)
-        holds = end > time
+        holds = ~(end <= time)
         if holds.any():
             columns = [begin, end, 1 / unit, *self._law.rows(constants, unit, series)]
             self._table.put(bodies[holds], np.array(columns)[:, holds])

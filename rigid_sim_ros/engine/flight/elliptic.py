@@ -36,15 +36,15 @@ def carlson_rf(functions, x, y):
     Numerical computation of real or complex elliptic integrals, 1995 (DLMF 19.36.1).
     """
     x, y, z = functions.maximum(x, SMALLEST), functions.maximum(y, SMALLEST), 0 * x + 1.0
-    while True:
-        mean = (x + y + z) / 3
-        p, q = 1 - x / mean, 1 - y / mean
-        if functions.largest(functions.maximum(abs(p), functions.maximum(abs(q), abs(p + q)))
-                             ) < SPREAD:
-            break
+    spread = 1.0
+    while spread > SPREAD:
         a, b, c = functions.sqrt(x), functions.sqrt(y), functions.sqrt(z)
         shift = a * b + b * c + c * a
         x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
+        mean = (x + y + z) / 3
+        p, q = 1 - x / mean, 1 - y / mean
+        spread = functions.largest(
+            functions.maximum(abs(p), functions.maximum(abs(q), abs(p + q))))
     r = -p - q
     e2, e3 = p * q - r * r, p * q * r
     return (1 - e2 / 10 + e3 / 14 + e2 * e2 / 24 - 3 * e2 * e3 / 44 - 5 * e2 ** 3 / 208

@@ -27,6 +27,9 @@ from rigid_sim_ros.engine.flight.series import (
 ORDER = 48
 """Highest order of the series; most end earlier, by size."""
 
+LEAST_ORDER = 16
+"""Order from which on the size of the terms is looked at: none end before."""
+
 REACH = 3.0
 """
 Half the angle [rad] a stride reaches. More means fewer strides of more orders, and rounding grows
@@ -92,9 +95,10 @@ def stride(functions, constants, time, state):
             scale * (back * a - turn * c - drift * last_c), c)
         series_a.append(a)
         series_c.append(c)
-        last_size, size = size, functions.largest(abs(a) + abs(c))
-        if size < NEGLIGIBLE and last_size < NEGLIGIBLE:
-            break
+        if order >= LEAST_ORDER:
+            last_size, size = size, functions.largest(abs(a) + abs(c))
+            if size < NEGLIGIBLE and last_size < NEGLIGIBLE:
+                break
     a, c = sum(reversed(series_a)), sum(reversed(series_c))
     scale = 1 / functions.hypot(abs(a), abs(c))
     return end, length, (series_a, series_c), (a * scale, c.conjugate() * scale)

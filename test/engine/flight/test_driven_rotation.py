@@ -114,3 +114,25 @@ def test_a_tiny_torque_joins_the_free_rotation():
         begin_one(flights, 1, 0.0, angular_velocity=rate, torque=(1e-18, 2e-18, -1e-18))
         quaternion = flights.poses(6.0)[1]
         assert rotation.angle_between(quaternion[:, :1], quaternion[:, 1:]).max() < 1e-13
+
+
+@pytest.mark.parametrize('copies', [1, 20])
+@pytest.mark.parametrize('moments', [(1e-8,) * 3, (1e-8, 2e-8, 2.5e-8)])
+def test_a_rotation_too_fast_to_follow_is_refused_and_not_followed(moments, copies):
+    # a newton metre on a cube of a centimetre: a billion radians in seconds
+    one = {'moments': moments, 'quaternion': (0.0, 0.0, 0.0, 1.0), 'rate': (0.1, 0.2, 0.3),
+           'torque': (1.0, 0.0, 0.0)}
+    flights = flights_of([one], copies)
+    assert np.isfinite(flights.poses(1e-4)[1]).all()
+    with pytest.raises(OverflowError, match='too fast to be followed to 100.0 s'):
+        flights.poses(100.0)
+
+
+@pytest.mark.filterwarnings('ignore:invalid value')
+def test_what_is_not_a_number_ends():
+    for moments in ((1.0, 1.0, 1.0), (1.0, 2.0, 2.5)):
+        for torque in ((0.0, 0.0, 0.0), (np.nan, 0.0, 0.0)):
+            one = {'moments': moments, 'quaternion': (0.0, 0.0, 0.0, 1.0),
+                   'rate': (np.nan, 0.2, 0.3), 'torque': torque}
+            for copies in (1, 20):
+                assert np.isnan(flights_of([one], copies).poses(1.0)[1]).any()
