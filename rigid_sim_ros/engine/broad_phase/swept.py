@@ -72,10 +72,10 @@ def swept_pairs(bodies, flying, solid, position, velocity, acceleration):
                              for values in motion[1:])]
     horizon = min(_horizon(radius, *relative, motion[0]),
                   _horizon(radius, *motion, position[:, obstacles]))
-    a, b = spheres_with_spheres(*_around_paths(radius, *relative, horizon))
+    a, b = spheres_with_spheres(*around_paths(radius, *relative, horizon))
     pairs = [(movers[a], movers[b])]
     if len(obstacles):
-        a, b = spheres_with_others(*_around_paths(radius, *motion, horizon),
+        a, b = spheres_with_others(*around_paths(radius, *motion, horizon),
                                    position[:, obstacles], bodies.bounding_radius[obstacles])
         a, b = movers[a], obstacles[b]
         pairs.append((np.minimum(a, b), np.maximum(a, b)))
@@ -97,7 +97,7 @@ def _all_pairs(movers, still):
     return np.minimum(one, other), np.maximum(one, other)
 
 
-def _around_paths(radius, position, velocity, acceleration, horizon):
+def around_paths(radius, position, velocity, acceleration, horizon):
     """
     Return the center (3, k) and radius (k,) [m] of spheres that hold bodies all the way.
 

@@ -20,6 +20,7 @@ import pytest
 
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.broad_phase import candidate_pairs, swept_pairs
+from rigid_sim_ros.engine.broad_phase.swept import around_paths
 from rigid_sim_ros.engine.model import Body, Plane, Scene
 from rigid_sim_ros.engine.shapes import Sphere
 
@@ -153,3 +154,22 @@ def test_a_crowd_that_falls_together_makes_few_pairs():
     # in this time they fall 500 m and more, and neighbours are 0.2 m apart
     assert horizon > 10
     assert len(a) < 500
+
+
+def test_a_sphere_around_a_path_holds_all_of_it_and_little_else():
+    rng = np.random.default_rng(6)
+    radius = rng.uniform(0.1, 1, 500)
+    position, velocity, acceleration = rng.normal(size=(3, 3, 500)) * [[[1]], [[1]], [[3]]]
+    horizon = 1.3
+    center, reach = around_paths(radius, position, velocity, acceleration, horizon)
+    furthest = 0.0
+    for time in np.linspace(0, horizon, 101):
+        there = position + time * velocity + 0.5 * time * time * acceleration
+        furthest = np.maximum(furthest, np.sqrt(((there - center) ** 2).sum(axis=0)))
+    assert (furthest + radius <= reach).all()
+    # there and back again: the bulge alone
+    assert ((furthest + radius) / reach).max() > 0.9
+    velocity = -0.5 * horizon * acceleration
+    center, reach = around_paths(radius, position, velocity, acceleration, horizon)
+    apex = position + 0.25 * horizon * velocity
+    assert reach == pytest.approx(np.sqrt(((apex - center) ** 2).sum(axis=0)) + radius)

@@ -196,8 +196,12 @@ def test_resting_contact_is_reported_at_once_or_when_it_has_sunk():
     flying = Flying([Cube(1.0)], GROUND, position=[(0, 0, 0.5)], velocity=[(1.0, 0, 0)],
                     acceleration=FALLING)
     assert touch(flying) == 0.0
-    size = 0.75 ** 0.5
-    assert touch(flying, guarded=True) == pytest.approx(np.sqrt(2e-10 * size / GRAVITY), rel=1e-6)
+    sunk = np.sqrt(2e-10 * 0.75 ** 0.5 / GRAVITY)
+    assert touch(flying, guarded=True) == pytest.approx(sunk, rel=1e-6)
+    many = Flying([Cube(1.0)] * 20, GROUND, position=[(0, 0, 0.5)] * 20, acceleration=FALLING * 20)
+    times = first_touches(many.bodies, many.flights, np.arange(20), np.full(20, 20), 0.0, 1.0,
+                          np.arange(20) < 10)
+    assert times == pytest.approx([sunk] * 10 + [0.0] * 10, rel=1e-6)
 
 
 @pytest.mark.parametrize('other', ['plane', 'box'])
