@@ -14,8 +14,10 @@
 
 """What users are told: usage, and at the start where things are and what can be tried."""
 
+import os
 from pathlib import Path
-from shutil import which
+import shlex
+import shutil
 import sys
 
 from rigid_sim_ros.nodes.parameters import PARAMETERS
@@ -56,15 +58,18 @@ def welcome(node, simulation, parameters, publications, recording_text):
         'takes     ' + ' '.join(node.resolve_topic_name(row.name) for row in COMMANDS),
         'services  ' + ' '.join(node.resolve_service_name(row.name) for row in SERVICES)]
     if simulation.names:
-        lines += ['try, in another terminal:', *('  ' + line for line in examples(
-            node.resolve_topic_name, simulation.names))]
+        command = ros2_command()
+        folder = os.path.dirname(command)
+        here = ', in this folder' if folder and not os.path.isabs(folder) else ''
+        lines += [f'try, in another terminal{here}:', *('  ' + line for line in examples(
+            command, node.resolve_topic_name, simulation.names))]
     return lines
 
 
-def examples(resolve, names):
+def examples(command, resolve, names):
     """Return three shell commands that move bodies; `resolve` gives a topic's full name."""
     first, last = names[0], names[-1]
-    publish = _publishing_command()
+    publish = f'{shlex.quote(command)} topic pub --once'
     return (
         f"{publish} {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
         f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'",
@@ -74,12 +79,12 @@ def examples(resolve, names):
         f"'{{header: {{frame_id: {last}}}, vector: {{z: 0.5}}}}'")
 
 
-def _publishing_command():
-    """Return how to send a message from here: by ROS, or where that is not, by `send`."""
-    own = Path(sys.executable).with_name('rigid_sim_send')
-    if which('ros2') or not own.is_file():
-        return 'ros2 topic pub --once'
-    return str(own.relative_to(Path.cwd()) if own.is_relative_to(Path.cwd()) else own)
+def ros2_command():
+    """Return what to type for `ros2`: that, or our stand-in for it where there is none."""
+    own = Path(sys.executable).with_name('rigid_sim_ros2')
+    if shutil.which('ros2') or not own.is_file():
+        return 'ros2'
+    return min(os.path.relpath(own), str(own), key=len)
 
 
 def _count(simulation):

@@ -14,6 +14,10 @@
 
 """Control of time: a session driven by the wall clock, paused, stepped and reset."""
 
+from contextlib import contextmanager
+
+from numpy.linalg import LinAlgError
+
 from rigid_sim_ros.nodes.pacing import Pacer
 
 IDLE = 0.1
@@ -27,12 +31,15 @@ class Control:
     Wall times [s] are those of `now()`, a monotonic clock.
     """
 
-    def __init__(self, session, parameters, stop, now):
+    def __init__(self, session, parameters, stop, now, log_error):
         """Take the parameters as they are and as they will be; see `start`."""
         self._session = session
         self._parameters = parameters
         self._stop = stop
         self._now = now
+        self._log_error = log_error
+        self.failure = ''
+        """Why the simulation cannot go on, one line; empty while it can."""
         session.paused = parameters.start_paused
         self.pacer = Pacer(parameters.real_time_factor, 1 / parameters.publish_rate)
         self._take_parameters()
@@ -50,23 +57,43 @@ class Control:
         self.pacer.anchor(self._session.time, self._now())
 
     def set_paused(self, paused):
-        """Stop simulated time, or let it go on from where it is."""
+        """Stop simulated time, or let it go on from where it is if it can; tell whether it did."""
+        if self.failure and not paused:
+            return False
         if self._session.paused and not paused:
             self.start()
         self._session.paused = paused
+        return True
 
     def step(self):
-        """Advance by the parameter `step_duration`, if paused; tell whether it was."""
-        if not self._session.paused:
+        """Advance by the parameter `step_duration`, if paused and able to; tell whether it did."""
+        if self.failure or not self._session.paused:
             return False
-        self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
+        with self.failing_softly():
+            self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
         self._session.paused = True
-        return True
+        return not self.failure
 
     def reset(self):
         """Begin again with the scene as loaded, paused or running as before."""
+        self.failure = ''
         self._session.reset(self._parameters.reset_time)
         self.start()
+
+    @contextmanager
+    def failing_softly(self):
+        """
+        Pause for good if the engine cannot compute what it was told to.
+
+        A torque that is a number like any other can spin a body up to where nothing can follow
+        it. The node stays, for a reset or for whoever wants to know what happened.
+        """
+        try:
+            yield
+        except (ArithmeticError, LinAlgError) as error:
+            self._session.paused = True
+            self.failure = f'the simulation cannot go on, only be reset: {error}'
+            self._log_error(self.failure)
 
     def work(self):
         """
@@ -81,7 +108,7 @@ class Control:
         time = session.next_time
         if self._now() < self.pacer.due(time):
             return self.pacer.due(time)
-        with self._stop.breakable():
+        with self.failing_softly(), self._stop.breakable():
             session.advance()
         self.pacer.published(time, self._now())
         return self._now() + IDLE if session.paused else self.pacer.due(session.next_time)

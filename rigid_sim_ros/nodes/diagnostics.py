@@ -14,7 +14,7 @@
 
 """How the node and its simulation are doing: the statuses in `/diagnostics`."""
 
-from rigid_sim_ros.messages import DiagnosticStatus, OK, WARN
+from rigid_sim_ros.messages import DiagnosticStatus, ERROR, OK, WARN
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 
 PERIOD = 1.0
@@ -76,6 +76,8 @@ class Diagnostics:
                 'worst lateness [ms]': f'{lateness * 1e3:.3f}'})
 
     def _simulation(self):
+        if self._control.failure:
+            return DiagnosticStatus(ERROR, f'{self._name}: simulation', self._control.failure)
         simulation = self._session.simulation
         count = len(simulation.names)
         return DiagnosticStatus(

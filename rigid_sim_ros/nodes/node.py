@@ -22,6 +22,7 @@ from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.nodes.announcement import welcome
 from rigid_sim_ros.nodes.clock_source import ClockSource
 from rigid_sim_ros.nodes.command_topics import CommandTopics
+from rigid_sim_ros.nodes.commands import Refused
 from rigid_sim_ros.nodes.control import Control
 from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
@@ -72,7 +73,7 @@ class SimulationNode:
         self._now = now
         self._source = Source(simulation, parameters.world_frame, dump_scene(scene))
         self.session = Session(simulation, parameters.publish_rate, self._publish_state)
-        self.control = Control(self.session, parameters, stop, now)
+        self.control = Control(self.session, parameters, stop, now, logger.error)
         self.recording = Recording(self.ros, parameters, self._source)
         self.refused = CountedWarnings(logger.warning)
         self.late = CountedWarnings(logger.warning)
@@ -130,9 +131,14 @@ class SimulationNode:
         """Return the simulated time, for people."""
         return f'{self.session.time / NANOSECONDS:.9f} s'
 
+    @property
+    def failure(self):
+        """Return why the simulation cannot go on, one line; empty while it can."""
+        return self.control.failure
+
     def set_paused(self, paused):
-        """Stop simulated time, or let it go on."""
-        self.control.set_paused(paused)
+        """Stop simulated time, or let it go on; tell whether that worked."""
+        return self.control.set_paused(paused)
 
     def step(self):
         """Advance by `step_duration`, if paused; tell whether it was."""
@@ -176,11 +182,14 @@ class SimulationNode:
         self.recording.note_parameters(self.session.time)
 
     def _take_command(self, command, stamp, rank, topic, data):
+        if self.control.failure:
+            raise Refused('simulation failed', lambda: self.control.failure)
         session = self.session
         now = session.time
         if self.parameters.command_timing != STAMP or stamp == 0:
-            session.commands.carry_out(command, now)
-            self.recording.write(topic, now, data)
+            with self.control.failing_softly():
+                session.commands.carry_out(command, now)
+                self.recording.write(topic, now, data)
             return
         session.commands.schedule(
             command, stamp, rank, now, lambda time: self.recording.write(topic, time, data))
@@ -192,6 +201,8 @@ class SimulationNode:
 
     def _show_changes(self):
         """Show the state to new subscribers, and to all if a command changed it."""
+        if self.control.failure:
+            return
         taken = self.session.commands.taken
         if taken != self._taken_shown or self.publications.has_new_subscriber():
             self.publications.show_state(self.session.time)

@@ -30,17 +30,19 @@ class Services:
 
     def pause(self, request, response):
         """Stop simulated time, or let it go on."""
-        self._simulation_node.set_paused(request.data)
-        response.success = True
+        node = self._simulation_node
+        response.success = node.set_paused(request.data)
         state = 'paused' if request.data else 'running'
-        response.message = f'{state} at {self._simulation_node.time_text}'
+        response.message = node.failure or f'{state} at {node.time_text}'
         return response
 
     def step(self, request, response):
         """Advance by `step_duration` while paused."""
-        response.success = self._simulation_node.step()
-        response.message = (f'paused at {self._simulation_node.time_text}' if response.success
-                            else 'the simulation is running: pause it first')
+        node = self._simulation_node
+        response.success = node.step()
+        response.message = (
+            f'paused at {node.time_text}' if response.success
+            else node.failure or 'the simulation is running: pause it first')
         return response
 
     def reset(self, request, response):

@@ -159,3 +159,28 @@ def test_node_still_takes_commands(running):
     message = client.spin_until(
         lambda: states and states[-1].twist[0].linear.x and states[-1], 'the commanded velocity')
     assert_array_equal([message.twist[0].linear.x, message.twist[0].angular.y], [0.25, 0.5])
+
+
+def test_what_cannot_be_simulated_pauses_and_a_reset_helps(tmp_path):
+    (tmp_path / 'scene.yaml').write_text("""
+gravity: [0, 0, 0]
+bodies: [{name: plank, box: {size: [0.1, 0.2, 0.3]}, mass: 1.0}]
+""")
+    with NodeProcess(tmp_path, scene='scene.yaml') as process, Client(process) as client:
+        states = client.listen('~/states')
+        diagnostics = client.listen('/diagnostics')
+        client.command('~/cmd_torque', 'plank', vector=(9e8, 3e8, -1e8))
+        process.wait_for_text('the simulation cannot go on, only be reset')
+        response = client.call('~/pause', data=False)
+        assert not response.success and 'only be reset' in response.message
+        assert not client.call('~/step').success
+        client.command('~/cmd_vel', 'plank', linear=(1, 0, 0))
+        wait_for_counts(client, diagnostics, lambda now: now.get('refused, simulation failed'))
+        assert any(status.level == b'\x02' for status in diagnostics[-1].status)
+        assert client.call('~/reset').success
+        assert client.call('~/pause', data=False).success
+        states.clear()
+        client.command('~/cmd_vel', 'plank', linear=(1, 0, 0))
+        client.spin_until(lambda: states and states[-1].twist[0].linear.x == 1.0
+                          and states[-1].transforms[0].translation.x > 0.1, 'motion')
+        assert 'Traceback' not in process.error

@@ -39,7 +39,7 @@ def call(graph, options):
     request = from_yaml(service_type.Request, options.values)
     type_name = graph.type_of_service(name)
     if interface_class('srv', type_name) is not service_type:
-        raise VerbError(f'service {name!r} has the type {type_name}, not the one given')
+        raise VerbError(f'service {name!r} has the type {type_name}, not {options.type}')
     print(f'requester: making request: {request!r}\n')
     print(f'response:\n{answer(graph, graph.node.create_client(service_type, name), request)!r}\n')
 

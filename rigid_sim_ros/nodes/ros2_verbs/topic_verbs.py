@@ -117,8 +117,8 @@ def publish(graph, options):
         print(f'publishing #{count}: {message!r}\n')
         publisher.publish(message)
         due += 1 / options.rate
-        while count != times and time.monotonic() < due:
-            graph.wait(lambda: False, min(due - time.monotonic(), 0.05))
+        if count != times:
+            time.sleep(max(0.0, due - time.monotonic()))
     if not publisher.wait_for_all_acked(Duration(seconds=graphs.PATIENCE)):
         raise VerbError(f'published on {topic}, but a subscriber did not acknowledge it')
 
@@ -132,12 +132,11 @@ def _wait_for_subscription(graph, publisher):
 
 def _type_on(graph, topic, wanted=None):
     """Return the type of a topic; it has to be the one that is wanted, if one is."""
-    if wanted is not None:
-        wanted = interface_class('msg', wanted)
+    wanted_type = None if wanted is None else interface_class('msg', wanted)
     type_name = graph.type_of_topic(topic)
     message_type = interface_class('msg', type_name)
-    if wanted not in (None, message_type):
-        raise VerbError(f'topic {topic!r} has the type {type_name}, not the one given')
+    if wanted_type not in (None, message_type):
+        raise VerbError(f'topic {topic!r} has the type {type_name}, not {wanted}')
     return message_type
 
 
