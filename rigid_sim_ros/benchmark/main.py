@@ -17,7 +17,7 @@
 import argparse
 import sys
 
-from rigid_sim_ros.benchmark import run_command
+from rigid_sim_ros.benchmark import report_command, run_command
 from rigid_sim_ros.benchmark.engines import ENGINES, installed_engines
 from rigid_sim_ros.benchmark.errors import BenchmarkError
 from rigid_sim_ros.benchmark.problems import PROBLEMS
@@ -86,6 +86,7 @@ def list_all(options):
 COMMANDS = {
     'run': (run_command.add_options, run_command.run, 'measure problems (the default)'),
     'list': (add_list_options, list_all, 'list problems and engines'),
+    'report': (report_command.add_options, report_command.run, 'tables and plots of results'),
     'tosses': (tosses_command.add_options, tosses_command.run, 'compare with real cube tosses'),
 }
 """By name: what adds the options, what runs, one line of help."""

@@ -26,7 +26,8 @@ from rigid_sim_ros.benchmark.machine import machine_facts
 from rigid_sim_ros.benchmark.measuring import Effort, measure
 from rigid_sim_ros.benchmark.problems import FRAME_RATE, PROBLEMS
 from rigid_sim_ros.benchmark.processes import Worker
-from rigid_sim_ros.benchmark.report import markdown_tables, terminal_table
+from rigid_sim_ros.benchmark.report import terminal_table
+from rigid_sim_ros.benchmark.report_command import add_output_options, write_reports
 from rigid_sim_ros.benchmark.results import write_csv
 from rigid_sim_ros.scene import load_scene
 from tqdm import tqdm
@@ -53,10 +54,7 @@ def add_options(parser):
                         help='where to write; files there are replaced; default '
                         'benchmark_DATE_TIME')
     parser.add_argument('--no-plots', action='store_true', help='write no plots')
-    parser.add_argument('--markdown', type=Path, metavar='FILE',
-                        help='write tables in Markdown too, replacing the file')
-    parser.add_argument('--markdown-rate', type=int, default=240, metavar='HZ',
-                        help='steps a second of those tables (%(default)s)')
+    add_output_options(parser)
 
 
 def run(options):
@@ -82,13 +80,9 @@ def run(options):
                     print(terminal_table(problem, measured), end='\n\n', flush=True)
                 # after each problem, so that what was measured is not lost
                 write_csv(folder / 'results.csv', results, facts)
-    if options.markdown:
-        options.markdown.write_text(markdown_tables(results, facts, options.markdown_rate),
-                                    encoding='utf-8')
-    if not options.no_plots:
-        # here, as matplotlib is needed for nothing else
-        from rigid_sim_ros.benchmark.plots import write_plots
-        write_plots(folder, results)
+    if not options.plots and not options.no_plots:
+        options.plots = folder
+    write_reports(options, results, facts)
     print(f'written to {folder}')
 
 

@@ -177,6 +177,25 @@ def test_a_short_run_prints_and_writes(tmp_path, capsys):
     assert (tmp_path / 'table.md').read_text().startswith('| error, CPU time [ms]')
 
 
+def test_report_joins_files_and_the_last_one_counts(tmp_path, capsys):
+    pytest.importorskip('matplotlib')
+    write_csv(tmp_path / 'first.csv', SOME[:3], FACTS)
+    write_csv(tmp_path / 'second.csv', [result(engine='mujoco', run_cpu_ms=7.5)], FACTS)
+    assert main(['report', str(tmp_path / 'first.csv'), str(tmp_path / 'second.csv'),
+                 '--markdown', str(tmp_path / 'table.md'), '--plots', str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-2].split()[-1] == '7.5'
+    assert '| 2.0e-06, 50 | 2.0e-06, 7.5 |' in (tmp_path / 'table.md').read_text()
+    assert (tmp_path / 'error_slide.png').exists()
+
+
+def test_report_refuses_other_files(tmp_path, capsys):
+    other = tmp_path / 'other.csv'
+    other.write_text('a,b\n1,2\n')
+    assert main(['report', str(other)]) == 2
+    assert capsys.readouterr().err.startswith(
+        f'rigid_sim_benchmark: {other} is not a file of results')
+
+
 def test_tosses_of_a_cube_that_only_flies(tmp_path, capsys):
     from test_tosses import write
     path = write(tmp_path / 'tosses.npz', offset=[0, 12])
