@@ -17,8 +17,8 @@
 from math import inf, sqrt
 
 from rigid_sim_ros.engine.narrow_phase.separating_axes import PARALLEL
-from rigid_sim_ros.engine.time_of_impact.plain_lines import (
-    axes_of, cross, difference, dot, turning)
+from rigid_sim_ros.engine.plain_vectors import axes_of, cross, difference, dot
+from rigid_sim_ros.engine.time_of_impact.plain_lines import turning
 
 
 def box_box(a, b, end):

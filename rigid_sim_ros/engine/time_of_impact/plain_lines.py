@@ -19,9 +19,11 @@ Each function returns the one that `plain_march.march_one` asks for the lines at
 is the end of the search.
 """
 
-from math import copysign, sqrt
+from math import copysign
 
 from rigid_sim_ros.engine.broad_phase.meeting import first_fall, sphere_meeting_time
+from rigid_sim_ros.engine.plain_vectors import (
+    axes_of, corners, cross, difference, dot, length, to_world)
 from rigid_sim_ros.engine.time_of_impact.pair_lines import LIMIT, NEVER
 
 
@@ -57,46 +59,7 @@ class PlainBody:
 
     def corners(self, axes, direction):
         """Return how far [m] each of the 8 vertices is from the centre along `direction`."""
-        a, b, c = self.half
-        x, y, z = direction
-        (p, q, r), (s, t, u), (v, w, o) = axes
-        x, y, z = (a * (x * p + y * q + z * r), b * (x * s + y * t + z * u),
-                   c * (x * v + y * w + z * o))
-        return (-x - y - z, x - y - z, y - x - z, x + y - z,
-                z - x - y, x - y + z, y - x + z, x + y + z)
-
-
-def dot(a, b):
-    """Return the scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a, b):
-    """Return the vector product."""
-    x, y, z = a
-    u, v, w = b
-    return y * w - z * v, z * u - x * w, x * v - y * u
-
-
-def length(a):
-    """Return the length."""
-    x, y, z = a
-    return sqrt(x * x + y * y + z * z)
-
-
-def difference(a, b):
-    """Return b - a."""
-    return b[0] - a[0], b[1] - a[1], b[2] - a[2]
-
-
-def axes_of(quaternion):
-    """Return the three body axes in world axes: the columns of the rotation matrix."""
-    x, y, z, w = quaternion
-    x2, y2, z2 = x + x, y + y, z + z
-    xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
-    wx, wy, wz = w * x2, w * y2, w * z2
-    return ((1 - yy - zz, xy + wz, xz - wy), (xy - wz, 1 - xx - zz, yz + wx),
-            (xz + wy, yz - wx, 1 - xx - yy))
+        return corners(axes, self.half, direction)
 
 
 def box_plane(a, normal, offset, end):
@@ -190,13 +153,6 @@ def nearest(center, half):
         least = outside.index(distance)
         direction = [float(axis == least) for axis in range(3)]
     return [copysign(x, y) for x, y in zip(direction, center)], distance, beyond
-
-
-def to_world(axes, vector):
-    """Return a vector in body axes turned to world axes."""
-    x, y, z = vector
-    (a, b, c), (d, e, f), (g, h, i) = axes
-    return x * a + y * d + z * g, x * b + y * e + z * h, x * c + y * f + z * i
 
 
 def turning(a, b, normal, rate, position, other_position, velocity, radius,

@@ -216,6 +216,24 @@ def test_box_on_plane_has_every_vertex_below_the_margin():
     assert separations(scene, [0], [1], position, orientation) == pytest.approx(heights[:1])
 
 
+def test_one_box_in_plain_floats_has_the_contacts_it_has_in_arrays():
+    rng = np.random.default_rng(9)
+    scene = bodies(rng.uniform(0.3, 2, (40, 3)), planes=[((0, 0.6, 0.8), 0.25)])
+    position = rng.normal(size=(3, 41))
+    orientation = random_orientations(rng, 41)
+    counts = set()
+    for box in range(40):
+        one = find_contacts(scene, [box], [40], position, orientation, np.array([0.2]))
+        many = PairGroups(scene, [box], [40]).find_contacts(position, orientation, 0.2)
+        for name in ('body_a', 'body_b', 'feature', 'edge_a', 'edge_b', 'normal'):
+            assert (getattr(one, name) == getattr(many, name)).all()
+            assert getattr(one, name).shape == getattr(many, name).shape
+        assert one.point == pytest.approx(many.point, abs=1e-14)
+        assert one.separation == pytest.approx(many.separation, abs=1e-14)
+        counts.add(one.count)
+    assert {0, 1, 2, 8} <= counts
+
+
 def test_spheres_by_hand():
     scene = bodies([[2, 2, 2]], radii=[0.5, 0.25], planes=[((0, 0, 1), -1.0)])
     position, orientation = poses((0, 0, 0), (0, 0, 1.45), (1.1, 1.2, 0), (0, 0, 0))
