@@ -199,3 +199,29 @@ def test_rates_are_the_derivative_of_the_attitude():
         rate = 2 * rotation.multiply(derivative, rotation.conjugate(flights.poses(time)[1]))[:3]
         # five points: an error of step^4 times the fifth derivative
         assert abs(rate - flights.velocities(time)[1]).max() < 1e-9
+
+
+@pytest.mark.parametrize('count', [1, 40])
+def test_a_body_may_change_its_form_and_back(count):
+    # near the middle axis the form is hyperbolic, else trigonometric; the last begun counts
+    moments = np.repeat(np.array([BOX_1_2_3]).T, count, axis=1)
+    zero, identity = np.zeros((3, count)), np.zeros((4, count))
+    identity[3] = 1.0
+    flights, indices = Flights(moments), np.arange(count)
+    for rate in ((1e-4, 2.0, 1e-4), (2.0, 0.5, 0.3), (1e-3, -2.0, 1e-4), (0.3, 0.1, 3.0)):
+        columns = np.repeat(np.array([rate]).T, count, axis=1)
+        flights.begin(indices, 0.0, zero, identity, zero, columns, zero, zero)
+        alone = Flights(moments[:, :1])
+        begin_one(alone, 0, 0.0, angular_velocity=rate)
+        expected = np.array(alone.motion(0, 3.0)[1])
+        assert abs(flights.poses(3.0)[1].T - expected).max() < 1e-14
+        assert flights.poses(3.0, indices[:1])[1].shape == (4, 1)
+        assert abs(flights.motion(0, 3.0)[1] - expected).max() < 1e-14
+
+
+def test_tiny_rates_of_many():
+    count = 30
+    one = case('any box 3')
+    rows = [dict(one, rate=[component * 1e-200 for component in one['rate']])] * count
+    quaternion = flights_of(rows).poses(one['time'] * 1e200)[1]
+    assert angle_error(quaternion[:, 7], one['result']) < 3 * rounding_of(one)
