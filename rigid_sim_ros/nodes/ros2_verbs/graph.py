@@ -28,8 +28,8 @@ from rigid_sim_ros.nodes.executors import LONGEST_WAIT
 PATIENCE = 5.0
 """Wall time [s] to wait for others; on an idle machine they are found within 0.3 s."""
 
-STILLNESS = 1.0
-"""Wall time [s] without news after which those who are there are taken to be all."""
+STILLNESS = 1.5
+"""Wall time [s] without news after which those who have been found are taken to be all."""
 
 
 class VerbError(Exception):
