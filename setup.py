@@ -82,7 +82,6 @@ setup(
     entry_points={
         'console_scripts': [
             'rigid_sim_node = rigid_sim_ros.nodes.simulation_node:main',
-            'rigid_sim_send = rigid_sim_ros.nodes.send:main',
             'rigid_sim_ros2 = rigid_sim_ros.nodes.ros2_command:main',
             'rigid_sim_recover = rigid_sim_ros.bag_tools.recover:main',
             'rigid_sim_info = rigid_sim_ros.bag_tools.info:main',
