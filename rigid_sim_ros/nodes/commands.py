@@ -101,19 +101,33 @@ class Commands:
         self.timeout = 0.0
         self.taken = 0
         """Commands carried out so far."""
+        self.on_refused = lambda reason: None
+        """Called with the `Refused` of a command that cannot be carried out when its time comes."""
         self.clear()
 
     def clear(self):
-        """Forget what is pending: the simulation was reset, or has other bodies now."""
-        names = self._simulation.names
-        self._rows = {name: row for row, name in enumerate(names)}
+        """Forget what is pending and who holds what: the simulation was reset."""
         self._pending = []
         self._count = 0
-        self._scene_wrench = {quantity: getattr(self._simulation, quantity).copy()
-                              for quantity in _HELD}
-        # the number of the command that set what is held, so that a later one is not released
-        self._holder = {quantity: np.zeros(len(names), dtype=np.int64) for quantity in _HELD}
+        self._rows = {}
+        self._holder = {quantity: np.zeros(0, dtype=np.int64) for quantity in _HELD}
+        self.change_bodies()
+
+    def change_bodies(self):
+        """Go on with the bodies the simulation has now; what is pending stays."""
+        simulation = self._simulation
+        names, before = simulation.names, self._rows
+        self._rows = {name: row for row, name in enumerate(names)}
         self._known = ((), None)
+        moving = [body for body in simulation.scene.bodies if not body.fixed]
+        self._scene_wrench = {
+            quantity: np.array([getattr(body, quantity) for body in moving]).reshape(-1, 3)
+            for quantity in _HELD}
+        # the number of the command that set what is held, so that a later one is not released
+        for quantity, numbers in self._holder.items():
+            self._holder[quantity] = np.array(
+                [numbers[before[name]] if name in before else 0 for name in names],
+                dtype=np.int64)
 
     @property
     def pending(self):
@@ -157,9 +171,17 @@ class Commands:
         self._push(time, rank, action)
 
     def carry_out_due(self, now):
-        """Carry out everything pending whose time is `now` [ns] or earlier."""
+        """
+        Carry out everything pending whose time is `now` [ns] or earlier.
+
+        A command to a body that was removed while it waited is given to `on_refused`.
+        """
         while self.next_time <= now:
-            heappop(self._pending)[-1]()
+            action = heappop(self._pending)[-1]
+            try:
+                action()
+            except Refused as reason:
+                self.on_refused(reason)
 
     def _push(self, time, rank, action):
         self._count += 1
@@ -211,8 +233,8 @@ class Commands:
             + near_names(name, simulation.names)))
 
     def _apply(self, command, now):
-        self.taken += 1
         rows = self._rows_of(command.names)
+        self.taken += 1
         given = command.given()
         if self.axes == BODY_AXES:
             turn = self._simulation.orientation[rows].T
@@ -227,10 +249,11 @@ class Commands:
             if self.timeout > 0:
                 time = now + round(self.timeout * NANOSECONDS)
                 number = self._count
-                self._push(time, -1, lambda: self._release(rows, tuple(held), number))
+                self._push(time, -1, lambda: self._release(command.names, tuple(held), number))
 
-    def _release(self, rows, quantities, number):
-        """Hold on the rows again what the scene holds, where command `number` is still held."""
+    def _release(self, names, quantities, number):
+        """Hold on bodies again what the scene holds, where command `number` is still held."""
+        rows = np.array([self._rows[name] for name in names if name in self._rows], dtype=int)
         for quantity in quantities:
             left = rows[self._holder[quantity][rows] == number]
             if len(left):

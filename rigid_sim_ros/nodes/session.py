@@ -52,6 +52,8 @@ class Session:
         # node time at which the simulation's own clock was zero; not zero after a reset that
         # keeps time running
         self._origin = 0
+        self._added = []
+        self._removed = []
 
     @property
     def time(self):
@@ -86,14 +88,42 @@ class Session:
         while self._time < end and not stop():
             self.advance_to(min(self.next_time, end))
 
-    def reset(self, time_from_zero):
+    def add(self, body):
+        """Add a `model.Body` at once; raises `CommandError` if its name is taken."""
+        self.simulation.add(body)
+        self._added.append(body)
+        self.commands.change_bodies()
+
+    def remove(self, name):
+        """Take a body out at once; raises `CommandError` if there is none of that name."""
+        self.simulation.remove(name)
+        remaining = [body for body in self._added if body.name != name]
+        if len(remaining) == len(self._added):
+            self._removed.append(name)
+        self._added = remaining
+        self.commands.change_bodies()
+
+    @property
+    def added_names(self):
+        """Return the names of the bodies that were added since the start, a tuple."""
+        return tuple(body.name for body in self._added)
+
+    def reset(self, time_from_zero, keep_bodies=False):
         """
         Begin again with the scene as loaded, and publish that; pending commands are dropped.
 
-        Simulated time runs on, or begins at zero again.
+        Simulated time runs on, or begins at zero again. If `keep_bodies`, bodies added begin
+        again as they were when added, and those removed stay away.
         """
+        added, removed = self._added, self._removed
+        self._added, self._removed = [], []
         self.simulation.reset()
         self.commands.clear()
+        if keep_bodies:
+            for name in removed:
+                self.remove(name)
+            for body in added:
+                self.add(body)
         if time_from_zero:
             self._time = 0
         self._origin = self._time
