@@ -35,8 +35,11 @@ class Effort:
     least_time: float = 0.2
     """CPU time [s] that the timed runs should reach together."""
 
+    budget: float = 10.0
+    """CPU time [s] after which no further timed run is started."""
+
     timeout: float = 60.0
-    """Longest time [s] of a run; twice as much for all timed runs of a cell together."""
+    """Longest time [s] of a run. With warm-up and repeats: twice as much, and the budget."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,8 @@ def measure(problem, scene, engine, rate, worker, effort):
         if unknown:
             raise RunFailed(f'{unknown[0]} is {measures[unknown[0]]}')
         timing = worker.ask((scene, step, problem.may_sleep, read_times(problem, rate)),
-                            TimingPlan(effort.repeats, effort.least_time, effort.timeout),
-                            timeout=2 * effort.timeout)
+                            TimingPlan(effort.repeats, effort.least_time, effort.budget),
+                            timeout=2 * effort.timeout + effort.budget)
     except RunFailed as error:
         return Result(**result, status=FAILED, reason=str(error))
     return Result(
