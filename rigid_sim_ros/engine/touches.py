@@ -41,8 +41,14 @@ error it makes in a motion is of its second order (the bounces left out take as 
 class Touch(NamedTuple):
     """What a touch leaves behind."""
 
+    position: np.ndarray
+    """(3, m) of the bodies given [m]; what they leave the touch with, as all that follows."""
+
+    orientation: np.ndarray
+    """(4, m)"""
+
     linear: np.ndarray
-    """(3, m) velocities of the bodies given [m/s], world axes."""
+    """(3, m) [m/s], world axes."""
 
     angular: np.ndarray
     """(3, m) [rad/s], world axes."""
@@ -80,7 +86,8 @@ class Touches:
         Groups of bodies that have nothing to do with each other are solved by themselves. Impulses
         are noted as events.
         """
-        self._place(time, np.array(sorted({*body_a.tolist(), *body_b.tolist()})))
+        self._place(time, np.array(sorted(
+            {*indices.tolist(), *body_a.tolist(), *body_b.tolist()})))
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
         self._world.work.narrow_phases += len(body_a)
@@ -89,7 +96,8 @@ class Touches:
         stays = np.zeros(bodies.count, dtype=bool)
         for group in contact_groups(bodies, contacts):
             self._apply(time, group, stays)
-        return Touch(self._linear[:, indices], self._angular[:, indices], stays[indices])
+        return Touch(self._position[:, indices], self._orientation[:, indices],
+                     self._linear[:, indices], self._angular[:, indices], stays[indices])
 
     def _place(self, time, columns):
         """Fill in the poses and velocities of these bodies (k,)."""

@@ -109,9 +109,9 @@ class Exact:
             struck = np.union1d(struck, woken)
             body_a, body_b = self._with_supports(time, woken, body_a, body_b)
         touch = self._touches.resolve(time, struck, body_a, body_b)
-        position, orientation = self._flights.poses(time, struck)
-        self._flights.begin(struck, time, position, orientation, touch.linear, touch.angular,
-                            self._acceleration[:, struck], self._torque[:, struck])
+        self._flights.begin(struck, time, touch.position, touch.orientation, touch.linear,
+                            touch.angular, self._acceleration[:, struck],
+                            self._torque[:, struck])
         stays = touch.stays | self._islands.touching[struck]
         stay, part = struck[stays], struck[~stays]
         if len(part):
