@@ -67,16 +67,16 @@ def welcome(node, simulation, parameters, publications, recording_text):
 
 
 def examples(command, resolve, names):
-    """Return three shell commands that move bodies; `resolve` gives a topic's full name."""
+    """Return three shell commands: push, let go, throw; `resolve` gives a topic's full name."""
     first, last = names[0], names[-1]
     publish = f'{shlex.quote(command)} topic pub --once'
+    push = f"{publish} {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped"
+    # a force holds, so the second ends the first: nobody is left with a body that flies for ever
     return (
+        f"{push} '{{header: {{frame_id: {last}}}, vector: {{x: 8.0}}}}'",
+        f"{push} '{{header: {{frame_id: {last}}}}}'",
         f"{publish} {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
-        f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'",
-        f"{publish} {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped "
-        f"'{{header: {{frame_id: {last}}}, vector: {{x: 20.0}}}}'",
-        f"{publish} {resolve('~/cmd_torque')} geometry_msgs/msg/Vector3Stamped "
-        f"'{{header: {{frame_id: {last}}}, vector: {{z: 0.5}}}}'")
+        f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'")
 
 
 def ros2_command():

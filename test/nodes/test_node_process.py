@@ -59,7 +59,7 @@ def test_signal_while_it_starts(tmp_path):
 def test_start_tells_where_everything_is(tmp_path):
     with NodeProcess(tmp_path, scene='report_dynamics') as process, Client(process) as client:
         process.wait_for_text('try, in another terminal')
-        process.wait_for_text('cmd_torque geometry_msgs')
+        process.wait_for_text('cmd_vel geometry_msgs')
         for row in (*PUBLISHED, *COMMANDS, *SERVICES):
             assert client.topic(row.name) in process.error
         commands = [line.split(': ', 1)[1].strip() for line in process.error.splitlines()
