@@ -61,7 +61,7 @@ class Result:
     """Why it failed, one line."""
 
     measures: dict = field(default_factory=dict)
-    """Errors by name, the unit at the end of the name; the first is the one that is plotted."""
+    """Errors by name, the unit at the end of the name."""
 
     build_cpu_ms: float = None
     run_cpu_ms: float = None

@@ -15,9 +15,11 @@
 """Work-precision plots: error against CPU time, one line an engine; and time against bodies."""
 
 from math import ceil
+from textwrap import wrap
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rigid_sim_ros.benchmark.engines import ENGINES
 from rigid_sim_ros.benchmark.measuring import OK
@@ -63,7 +65,7 @@ def work_precision_figure(names, results):
     figure, panels = _panels(len(names))
     for panel, name in zip(panels, names):
         rows = [result for result in results if result.problem == name and result.status == OK]
-        measure = next(iter(rows[0].measures))
+        measure = PROBLEMS[name].plotted
         _lines(panel, rows, lambda result: result.run_cpu_ms,
                lambda result, measure=measure: max(result.measures[measure], SMALLEST_ERROR))
         title, unit = titled(measure)
@@ -120,6 +122,11 @@ def _lines(panel, rows, abscissa, ordinate):
     panel.set_yscale('log')
     panel.grid(visible=True, which='major', linewidth=0.4, color='#cccccc')
     panel.tick_params(labelsize=8)
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.set_minor_formatter(NullFormatter())
+    low, high = panel.get_xlim()
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 30 * low else (1,)))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
 
 
 def _add_legend(figure, panels):
@@ -132,12 +139,10 @@ def _add_legend(figure, panels):
                   ncols=min(len(order), 4), fontsize=8, frameon=False)
 
 
-def _wrapped(title, width=44):
-    """Return a title broken into two lines where it is long."""
-    if len(title) <= width:
-        return title
-    cut = title.rfind(' ', 0, width)
-    return f'{title[:cut]}\n{title[cut + 1:]}'
+def _wrapped(title, width=42):
+    """Return a title broken into lines of about equal length where it is long."""
+    lines = ceil(len(title) / width)
+    return '\n'.join(wrap(title, width=min(width, len(title) // lines + 8)))
 
 
 def _save(figure, folder, name):

@@ -63,8 +63,8 @@ def markdown_tables(results, facts, rate):
     """
     Return two Markdown tables at one step rate [Hz]: errors with CPU times, and crowds.
 
-    In the first a cell is the first measure of the problem and the CPU time of the whole run; in
-    the second it is the CPU time a step and, in brackets, the first measure.
+    In the first a cell is the problem's `plotted` measure and the CPU time of the whole run; in
+    the second it is the CPU time a step and, in brackets, that measure.
     """
     at_rate = [result for result in results if result.rate_hz == rate]
     engines = [name for name in ENGINES if any(result.engine == name for result in at_rate)]
@@ -76,8 +76,7 @@ def markdown_tables(results, facts, rate):
             if PROBLEMS[name].reads_every_step != every_step:
                 continue
             cells = {result.engine: result for result in at_rate if result.problem == name}
-            title, unit = titled(measure_names(cells.values())[0]) if any(
-                cell.measures for cell in cells.values()) else ('', '')
+            title, unit = titled(PROBLEMS[name].plotted)
             rows.append([PROBLEMS[name].title, f'{title} [{unit}]',
                          *(_markdown_cell(cells.get(engine), every_step) for engine in engines)])
         if rows:
@@ -96,7 +95,7 @@ def _markdown_cell(result, every_step):
         return '-'
     if result.status != OK:
         return result.status
-    error = f'{next(iter(result.measures.values())):.1e}'
+    error = f'{result.measures[PROBLEMS[result.problem].plotted]:.1e}'
     if every_step:
         return f'{result.run_cpu_us_per_step:.3g} ({error})'
     return f'{error}, {result.run_cpu_ms:.3g}'

@@ -42,11 +42,13 @@ def failed(**changes):
                   run_cpu_ms=None, run_cpu_us_per_step=None, timed_runs=None, **changes)
 
 
+CROWD = {'problem': 'drift_100', 'bodies': 100}
+
 SOME = [result(), result(rate=60, run_cpu_ms=20.0), result(engine='mujoco', run_cpu_ms=2.0),
         failed(engine='rapier'),
-        result(problem='drift_100', bodies=100, measures={'angle_error_rad': 1e-15}),
-        result(problem='drift_100', engine='mujoco', bodies=100,
-               measures={'angle_error_rad': 1e-14}, run_cpu_us_per_step=70.0)]
+        result(measures={'position_error_m': 1e-16, 'angle_error_rad': 1e-15}, **CROWD),
+        result(engine='mujoco', measures={'angle_error_rad': 1e-14}, run_cpu_us_per_step=70.0,
+               **CROWD)]
 
 
 def test_csv_comes_back_as_it_was(tmp_path):
@@ -62,7 +64,8 @@ def test_csv_has_facts_then_columns_with_units(tmp_path):
     rows = list(csv.reader(lines[len(FACTS):]))
     assert rows[0] == ['problem', 'engine', 'version', 'rate_hz', 'bodies', 'simulated_s',
                        'status', 'reason', 'build_cpu_ms', 'run_cpu_ms', 'run_cpu_us_per_step',
-                       'timed_runs', 'distance_error_relative', 'lift_m', 'angle_error_rad']
+                       'timed_runs', 'distance_error_relative', 'lift_m', 'position_error_m',
+                       'angle_error_rad']
     assert len(rows) == 1 + len(SOME)
     lost = dict(zip(rows[0], rows[4]))
     assert (lost['status'], lost['reason'], lost['run_cpu_ms']) == ('failed', 'not finite', '')

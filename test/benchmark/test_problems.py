@@ -64,6 +64,7 @@ def test_bodies_that_stay_at_the_start_are_wrong(problem):
                        asleep=np.zeros(len(scene.bodies), bool))
     measures = problem.measure(still)
     assert all(titled(name)[1] for name in measures)
+    assert problem.plotted in measures
     if problem.name not in ('incline_stick', 'tower_10', *SPEEDS_ONLY):
         assert max(measures.values()) > 1e-3 or np.isnan(list(measures.values())).any()
 

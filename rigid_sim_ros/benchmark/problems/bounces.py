@@ -149,14 +149,15 @@ REST_FRAMES = 10
 
 PROBLEMS = (
     Problem('drop_elastic', 'cube dropped flat, e = 1, four bounces',
-            lambda: drop_scene(1.0), frames_near(apexes(1.0, 4)[0], 0.1), drop_errors(1.0, 4)),
+            lambda: drop_scene(1.0), frames_near(apexes(1.0, 4)[0], 0.1), drop_errors(1.0, 4),
+            'apex_height_error_relative'),
     Problem('drop_half', 'cube dropped flat, e = 0.5, to rest',
             lambda: drop_scene(0.5),
             frames_near(apexes(0.5, 3)[0], 1 / 60) + tuple(
                 (np.ceil(rest_time(0.5) * 60) + frame) / 60 for frame in range(REST_FRAMES)),
-            drop_errors(0.5, 3, REST_FRAMES)),
+            drop_errors(0.5, 3, REST_FRAMES), 'apex_height_error_relative'),
     Problem('tumble_bounces', 'tumbling cube, e = 1, no friction: the first five bounces',
-            tumble_scene, frames(1.45, 3), tumble_errors),
-    Problem('tumble_energy', 'the same for 45 s, about 100 bounces: energy',
-            tumble_scene, frames(45, 60), energy_errors),
+            tumble_scene, frames(1.45, 3), tumble_errors, 'position_error_m'),
+    Problem('tumble_energy', 'tumbling cube, e = 1, no friction: energy over 100 bounces, 45 s',
+            tumble_scene, frames(45, 60), energy_errors, 'energy_error_relative'),
 )

@@ -159,15 +159,15 @@ def cradle_errors(trajectory):
 
 
 PROBLEMS = (
-    *(Problem(f'{name}_{word}', f'two cubes, {title}, e = {restitution}, no friction',
+    *(Problem(f'{name}_{word}', f'two cubes, {title}, e = {restitution:g}, no friction',
               lambda pair=pair, restitution=restitution: pair_scene(pair, restitution),
-              (DURATION,), pair_errors(pair, restitution), bodies=2)
+              (DURATION,), pair_errors(pair, restitution), 'spin_error_relative', bodies=2)
       for name, title, pair in (('vertex_face', 'vertex on face', vertex_face_pair),
                                 ('edge_edge', 'edge on edge', edge_edge_pair))
       for word, restitution in (('elastic', 1.0), ('half', 0.5))),
-    Problem('vertex_face_100', '100 such pairs, vertex on face, e = 1',
+    Problem('vertex_face_100', '100 pairs of cubes, vertex on face, e = 1, no friction',
             lambda: pair_scene(vertex_face_pair, 1.0, 100), (DURATION,),
-            pair_errors(vertex_face_pair, 1.0), bodies=200),
+            pair_errors(vertex_face_pair, 1.0), 'spin_error_relative', bodies=200),
     Problem('cradle', 'five cubes in line with small gaps, e = 1',
-            cradle_scene, frames(0.25, 3), cradle_errors, bodies=5),
+            cradle_scene, frames(0.25, 3), cradle_errors, 'position_error_m', bodies=5),
 )

@@ -99,8 +99,8 @@ def crowd_errors(make_scene, still=False):
 
 def _crowd(name, title, make_scene, duration, bodies, still=False, may_sleep=False):
     return Problem(name, title, make_scene, frames(duration, 6), crowd_errors(make_scene, still),
-                   rates=(240,), reads_every_step=True, may_sleep=may_sleep, reach=30.0,
-                   bodies=bodies)
+                   'penetration_largest_m', rates=(240,), reads_every_step=True, reach=30.0,
+                   may_sleep=may_sleep, bodies=bodies)
 
 
 PROBLEMS = (

@@ -146,16 +146,17 @@ OFFSETS = tuple(10.0 ** -power for power in range(1, 13))
 
 PROBLEMS = (
     Problem('constant_wrench', 'cube, constant force and torque, 10 s',
-            constant_wrench_scene, (10.0,), constant_wrench_errors),
+            constant_wrench_scene, (10.0,), constant_wrench_errors, 'angle_error_rad'),
     Problem('tumbling_box', 'box 1:2:3 tumbling near its middle axis, 30 s',
-            lambda: tumbling_scene((0.01,)), frames(30, 60), tumbling_errors((0.01,))),
-    Problem('tumbling_boxes', 'twelve of them, 1e-1 to 1e-12 rad off the axis, 10 s',
+            lambda: tumbling_scene((0.01,)), frames(30, 60), tumbling_errors((0.01,)),
+            'angle_error_rad'),
+    Problem('tumbling_boxes', 'twelve boxes 1:2:3, 1e-1 to 1e-12 rad off the middle axis, 10 s',
             lambda: tumbling_scene(OFFSETS), frames(10, 60), tumbling_errors(OFFSETS),
-            bodies=len(OFFSETS)),
+            'angle_error_rad', bodies=len(OFFSETS)),
     Problem('driven_box', 'box 1:2:3, constant torque, 10 s',
-            driven_box_scene, frames(10, 60), driven_box_errors),
+            driven_box_scene, frames(10, 60), driven_box_errors, 'angle_error_rad'),
     *(Problem(f'drift_{count}', f'{count} cubes drifting and spinning apart, poses read each step',
               lambda count=count: drift_scene(count), (0.25, 0.5), drift_errors(count),
-              rates=(240,), reads_every_step=True, bodies=count)
+              'angle_error_rad', rates=(240,), reads_every_step=True, bodies=count)
       for count in (10, 100, 1000, 10000, 100000)),
 )

@@ -44,7 +44,10 @@ class Problem:
     """When poses are read [s], each a whole frame; the last is the end."""
 
     measure: Callable
-    """From a `Trajectory` to a mapping of measures; names end in the unit; the first is drawn."""
+    """From a `Trajectory` to a mapping of measures; names end in the unit."""
+
+    plotted: str
+    """The measure that plots and summaries show."""
 
     rates: tuple = RATES
     """Steps a second."""
