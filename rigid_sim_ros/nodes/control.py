@@ -74,10 +74,10 @@ class Control:
         self._session.paused = True
         return not self.failure
 
-    def reset(self):
-        """Begin again with the scene as loaded, paused or running as before."""
+    def reset(self, time_from_zero, keep_bodies=False):
+        """Begin again as `Session.reset` does, paused or running as before."""
         self.failure = ''
-        self._session.reset(self._parameters.reset_time)
+        self._session.reset(time_from_zero, keep_bodies)
         self.start()
 
     @contextmanager

@@ -99,11 +99,11 @@ class Entities:
                                 + near_names(name, self.names))
         return found if found.fixed else self._now([found])[0]
 
-    def spawn(self, body, name, rename=False):
+    def spawn(self, body, name='', rename=False, **changes):
         """
-        Add a body under a name, or under one like it if that is taken; return the name.
+        Add a body under a name (its own if empty), or one like it if that is taken; return it.
 
-        Raises `NameTaken`, `BadPlace`, or `BadDescription` for what is no name.
+        The changes are as in `place`. Raises `NameTaken`, `BadPlace`, or `BadDescription` for what is no name.
         """
         taken = frozenset(self._session.simulation.all_names)
         name = name or body.name
@@ -115,7 +115,7 @@ class Entities:
                 number += 1
             name = f'{name}_{number}'
         try:
-            body = replace(body, name=values.name(name))
+            body = replace(body, name=values.name(name), **_checked(changes))
         except values.NotAllowed as error:
             raise BadDescription(f'name is {shown(name)}; must be {error}') from error
         self._check_place(body)
@@ -136,18 +136,12 @@ class Entities:
         body = self.body(name)
         if body.fixed:
             raise EntityError(f'{shown(name)} is fixed')
-        try:
-            # all is checked before anything is changed
-            for field, value in changes.items():
-                changes[field] = tuple(
-                    unit_quaternion(value) if field == 'orientation' else vector(field, value))
-        except CommandError as error:
-            raise EntityError(str(error)) from error
-        changed = replace(body, **changes)
+        changed = replace(body, **_checked(changes))
         self._check_place(changed)
         simulation = self._session.simulation
         simulation.set_pose(name, changed.position, changed.orientation)
         simulation.set_velocity(name, changed.velocity, changed.angular_velocity)
+        self._session.publish_now()
 
     def _now(self, bodies):
         """Return moving bodies with the motion and the wrench they have now."""
@@ -172,3 +166,13 @@ class Entities:
             replace(body, fixed=False), *(replace(other, fixed=True) for other in others))))
         if overlap:
             raise BadPlace(f'{overlap[0]} would overlap {overlap[1]} by {overlap[2]:.3g} m')
+
+
+def _checked(changes):
+    """Return values of `model.Body` as tuples of finite numbers; raises `EntityError`."""
+    try:
+        return {field: tuple((unit_quaternion(value) if field == 'orientation'
+                              else vector(field, value)).tolist())
+                for field, value in changes.items()}
+    except CommandError as error:
+        raise EntityError(str(error)) from error

@@ -27,6 +27,7 @@ from rigid_sim_ros.nodes.control import Control
 from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
 from rigid_sim_ros.nodes.display import Display
+from rigid_sim_ros.nodes.entities import Entities
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import (
     ParameterError, Parameters, STAMP, unknown_parameter_text)
@@ -34,6 +35,7 @@ from rigid_sim_ros.nodes.publishing import Publications
 from rigid_sim_ros.nodes.recording import Recording
 from rigid_sim_ros.nodes.services import Services
 from rigid_sim_ros.nodes.session import Session
+from rigid_sim_ros.nodes.standard_services import is_available, StandardServices
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.scene import dump_scene, load_scene
 from rigid_sim_ros.topics import Source, TRANSFORMS
@@ -71,6 +73,7 @@ class SimulationNode:
         scene = load_scene(parameters.scene)
         simulation = Simulation(scene, parameters.method, parameters.max_step)
         self._now = now
+        self._stop = stop
         self._source = Source(simulation, parameters.world_frame, dump_scene(scene))
         self.session = Session(simulation, parameters.publish_rate, self._publish_state)
         self.control = Control(self.session, parameters, stop, now, logger.error)
@@ -87,11 +90,17 @@ class SimulationNode:
             self.ros.get_fully_qualified_name(), self.session, self.control, self.refused,
             self.late, self.recording)
         self._taken_shown = 0
+        self.entities = Entities(self.session)
+        self.session.on_bodies_changed = self._take_bodies
+        self.session.commands.on_refused = lambda reason: self.refused.add(
+            reason.kind, reason.describe)
         for name in ('command_axes', 'command_timeout'):
             parameters.when_changed(name, self._change_commands)
         self._change_commands()
         CommandTopics(self.ros, self._take_command, self.refused)
         Services(self.ros, self)
+        if is_available():
+            StandardServices(self)
         if parameters.record:
             self.recording.start(self.session.time)
 
@@ -144,11 +153,17 @@ class SimulationNode:
         """Advance by `step_duration`, if paused; tell whether it was."""
         return self.control.step()
 
-    def reset(self):
-        """Begin again with the scene as loaded."""
-        self.recording.note_reset(self.session.time, self.parameters.reset_time)
+    def reset(self, time_from_zero=None, keep_bodies=False):
+        """Begin again as `Session.reset` does; with time as parameter `reset_time` says if None."""
+        if time_from_zero is None:
+            time_from_zero = self.parameters.reset_time
+        self.recording.note_reset(self.session.time, time_from_zero)
         self._display.clear(self.session.time)
-        self.control.reset()
+        self.control.reset(time_from_zero, keep_bodies)
+
+    def quit(self):
+        """End as after a signal."""
+        self._stop.requested = True
 
     def record(self, wanted):
         """Start or stop recording; return whether that worked, and a text."""
@@ -167,6 +182,11 @@ class SimulationNode:
     def _publish_state(self, time, collisions):
         self.publications.send_state(time, collisions)
         self._display.take(time, collisions)
+
+    def _take_bodies(self):
+        self._source.scene_text = dump_scene(self.session.simulation.scene)
+        self._display.clear(self.session.time)
+        self.publications.send_scene(self.session.time)
 
     def _publish_transforms(self):
         try:

@@ -54,6 +54,8 @@ class Session:
         self._origin = 0
         self._added = []
         self._removed = []
+        self.on_bodies_changed = lambda: None
+        """Called when bodies were added or removed, before the next state is published."""
 
     @property
     def time(self):
@@ -92,7 +94,7 @@ class Session:
         """Add a `model.Body` at once; raises `CommandError` if its name is taken."""
         self.simulation.add(body)
         self._added.append(body)
-        self.commands.change_bodies()
+        self._take_bodies()
 
     def remove(self, name):
         """Take a body out at once; raises `CommandError` if there is none of that name."""
@@ -101,7 +103,7 @@ class Session:
         if len(remaining) == len(self._added):
             self._removed.append(name)
         self._added = remaining
-        self.commands.change_bodies()
+        self._take_bodies()
 
     @property
     def added_names(self):
@@ -121,12 +123,16 @@ class Session:
         self.commands.clear()
         if keep_bodies:
             for name in removed:
-                self.remove(name)
+                self.simulation.remove(name)
             for body in added:
-                self.add(body)
+                self.simulation.add(body)
+            self._added, self._removed = added, removed
+            self.commands.change_bodies()
         if time_from_zero:
             self._time = 0
         self._origin = self._time
+        if added or removed:
+            self.on_bodies_changed()
         self.publish_now()
 
     def advance_to(self, end):
@@ -145,6 +151,11 @@ class Session:
             collisions['time'] += self._origin / NANOSECONDS
         self.paused |= self.pause_on_collision and _touched(collisions)
         self._publish(self._time, collisions)
+
+    def _take_bodies(self):
+        self.commands.change_bodies()
+        self.on_bodies_changed()
+        self.publish_now()
 
     def _simulate_to(self, time):
         # from the difference to the simulation's own clock, so that rounding does not add up
