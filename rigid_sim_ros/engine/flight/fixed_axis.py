@@ -27,7 +27,8 @@ from math import cos, sin
 
 import numpy as np
 
-from rigid_sim_ros.engine.flight.functions import cosine_and_sine
+from rigid_sim_ros.engine.flight.functions import cosine_and_sine, MANY
+from rigid_sim_ros.engine.flight.packed_columns import columns_of
 from rigid_sim_ros.engine.flight.plain_rotation import product
 
 
@@ -75,12 +76,20 @@ class FixedAxisRotations:
 
     def orientations(self, elapsed, indices, out):
         """Write the quaternions of bodies (k,), a slice or None for all, to `out` (4, k)."""
-        along, across, half_rate, quarter_growth = (
-            self._all if indices is None else [part[..., indices] for part in self._all])
+        if indices is None:
+            along, across, half_rate, quarter_growth = self._all
+        else:
+            table = columns_of(self._table, indices)
+            along, across, half_rate, quarter_growth = (
+                table[COSINE], table[SINE], table[HALF_RATE], table[QUARTER_GROWTH])
         half_angle = half_rate * elapsed
         if self._grows:
             half_angle += quarter_growth * elapsed * elapsed
         count = len(half_angle)
+        if count < MANY:
+            np.multiply(along, np.cos(half_angle), out=out)
+            out += across * np.sin(half_angle)
+            return
         # bodies may be listed twice, so there may be more than there are
         scratch = self._scratch if count <= self._scratch.shape[1] else np.empty((6, count))
         waves, product = scratch[:2, :count], scratch[2:, :count]
@@ -91,7 +100,7 @@ class FixedAxisRotations:
 
     def rates(self, elapsed, indices):
         """Return the rates [rad/s] of bodies (k,), None for all, in world axes, (3, k)."""
-        table = self._table if indices is None else self._table[:, indices]
+        table = self._table if indices is None else columns_of(self._table, indices)
         if self._grows:
             return table[GROWTH] * elapsed + table[RATE]
         return table[RATE].copy()

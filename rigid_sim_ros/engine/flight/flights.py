@@ -59,7 +59,7 @@ class Flights:
         self._others = {FREE: FreeRotations(count),
                         DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
                         DRIVEN_UNEQUAL: DrivenRotations(unequal_moments, count)}
-        self._rotations = tuple(self._others.values())
+        self._present = ()
 
     @property
     def acceleration(self):
@@ -96,6 +96,7 @@ class Flights:
             if chosen.any():
                 rotations.begin(indices[chosen], time, moments[:, chosen], quaternion[:, chosen],
                                 angular_velocity[:, chosen], torque[:, chosen])
+        self._note_present()
 
     def poses(self, time, indices=None):
         """
@@ -111,7 +112,7 @@ class Flights:
                 self._write_poses(time, block, position[:, block], orientation[:, block])
         else:
             self._write_poses(time, indices, position, orientation)
-        for rotations in self._present():
+        for rotations in self._present:
             rotations.write_orientations(time, indices, orientation)
         return position, orientation
 
@@ -119,7 +120,7 @@ class Flights:
         """Return linear and angular velocities, (3, k) each, [m/s] and [rad/s], as `poses`."""
         elapsed = self._elapsed(time, indices)
         rate = self._fixed_axis.rates(elapsed, indices)
-        for rotations in self._present():
+        for rotations in self._present:
             rotations.write_rates(time, indices, rate)
         return self._translations.velocities(elapsed, indices), rate
 
@@ -166,7 +167,7 @@ class Flights:
         self._translations.positions(elapsed, indices, position)
         self._fixed_axis.orientations(elapsed, indices, orientation)
         rate = self._fixed_axis.rates(elapsed, indices)
-        for rotations in self._present():
+        for rotations in self._present:
             rotations.write_motions(times, indices, orientation, rate)
         return position, orientation, self._translations.velocities(elapsed, indices), rate
 
@@ -198,7 +199,7 @@ class Flights:
         """Return bounds of |w| [rad/s] and |dw/dt| [rad/s^2], (k,) each."""
         began = self._translations.start[indices]
         rate, derivative = self._fixed_axis.bounds(indices, start - began, end - began)
-        for rotations in self._present():
+        for rotations in self._present:
             rotations.write_bounds(indices, start, end, rate, derivative)
         return rate, derivative
 
@@ -221,10 +222,13 @@ class Flights:
         else:
             kind = DRIVEN_EQUAL if moments[0] == moments[1] == moments[2] else DRIVEN_UNEQUAL
         self._fixed_axis.begin_one(body, quaternion, rate, motion or STILL)
-        if kind != self._kind.item(body):
+        changes = kind != self._kind.item(body)
+        if changes:
             self._leave([body], kind)
         if kind != FIXED_AXIS:
             self._others[kind].begin_one(body, time, moments, quaternion, rate, torque)
+        if changes:
+            self._note_present()
 
     def _leave(self, indices, kind):
         """Give bodies (k,) new kinds (k,) and take them out of the tables of their old ones."""
@@ -241,6 +245,7 @@ class Flights:
         start = self._translations.start
         return time - (start if indices is None else start[indices])
 
-    def _present(self):
-        """Return the kinds of rotation other than about a fixed axis that some body has."""
-        return [rotations for rotations in self._rotations if rotations.count]
+    def _note_present(self):
+        """Note the kinds of rotation other than about a fixed axis that some body has."""
+        self._present = tuple(
+            rotations for rotations in self._others.values() if rotations.count)

@@ -49,6 +49,10 @@ FEW = 12
 """Up to so many bodies, constants are made one by one in plain floats: faster, measured."""
 
 
+FEW_SAMPLES = 8
+"""Up to so many bodies, evaluation is faster one by one in plain floats, measured."""
+
+
 class FreeRotations:
     """The rotations of all bodies that turn freely, in two tables, one a form."""
 
@@ -104,19 +108,26 @@ class FreeRotations:
     def write_orientations(self, time, indices, out):
         """Write the quaternions of those of `indices` (k,) that are here to `out` (4, k)."""
         for form, places, columns in self._selected(indices):
-            pairs = _unit_pairs(*form.pairs(columns[MOTION], time - columns[START]))
-            out[:, places] = _orientations(columns[WORLD], pairs)
+            if len(places) <= FEW_SAMPLES:
+                for place, column in zip(places.tolist(), columns.T.tolist()):
+                    out[:, place] = _motion(form, column, time)[0]
+            else:
+                pairs = _unit_pairs(*form.pairs(columns[MOTION], time - columns[START]))
+                out[:, places] = _orientations(columns[WORLD], pairs)
 
     def write_rates(self, time, indices, out):
         """Write the world rates of those of `indices` (k,) that are here to `out` (3, k)."""
         for form, places, columns in self._selected(indices):
-            out[:, places] = _motions(form, columns, time - columns[START])[1]
+            if len(places) <= FEW_SAMPLES:
+                for place, column in zip(places.tolist(), columns.T.tolist()):
+                    out[:, place] = _motion(form, column, time)[1]
+            else:
+                out[:, places] = _motions(form, columns, time)[1]
 
     def write_motions(self, times, indices, orientation, rate):
         """Write quaternions (4, k) and world rates (3, k) of bodies (k,) at their own times."""
         for form, places, columns in self._selected(indices):
-            orientation[:, places], rate[:, places] = _motions(
-                form, columns, times[places] - columns[START])
+            orientation[:, places], rate[:, places] = _motions(form, columns, times[places])
 
     def write_bounds(self, indices, start, end, rate, derivative):
         """Write upper bounds of |w| and |dw/dt|, (k,) each, at any time of bodies (k,)."""
@@ -127,20 +138,7 @@ class FreeRotations:
     def motion_of_one(self, body, time):
         """Return quaternion and world rate of one body in plain floats."""
         form, table = self._form_of(body)
-        column = table.column(body)
-        elapsed = time - column[START]
-        w, z, x, y = _unit_pair(*form.pair(column[MOTION], elapsed))
-        a, b, c, d, e, f, g, h, i, j, k, m, n, o, p, q = column[WORLD]
-        quaternion = to_unit_length((
-            a * w + b * z + c * x + d * y, e * w + f * z + g * x + h * y,
-            i * w + j * z + k * x + m * y, n * w + o * z + p * x + q * y))
-        if elapsed == 0:
-            return quaternion, tuple(column[RATE])
-        first, second, third = _momentum(w, z, x, y)
-        a, b, c, d, e, f, g, h, i = column[BODY_RATE]
-        return quaternion, to_world(quaternion, (
-            a * first + b * second + c * third, d * first + e * second + f * third,
-            g * first + h * second + i * third))
+        return _motion(form, table.column(body), time)
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""
@@ -215,10 +213,28 @@ def _orientations(matrices, pairs):
     return to_unit_length((matrices.reshape(4, 4, -1) * pairs).sum(axis=1))
 
 
-def _motions(form, columns, elapsed):
-    """Return quaternions (4, k) and world rates (3, k) so long (k,) after the starts."""
+def _motion(form, column, time):
+    """Return quaternion and world rate of one body in plain floats."""
+    elapsed = time - column[START]
+    w, z, x, y = _unit_pair(*form.pair(column[MOTION], elapsed))
+    a, b, c, d, e, f, g, h, i, j, k, m, n, o, p, q = column[WORLD]
+    quaternion = to_unit_length((
+        a * w + b * z + c * x + d * y, e * w + f * z + g * x + h * y,
+        i * w + j * z + k * x + m * y, n * w + o * z + p * x + q * y))
+    # at the start, as given: momentum to rate loses digits in very thin bodies
+    if elapsed == 0:
+        return quaternion, tuple(column[RATE])
+    first, second, third = _momentum(w, z, x, y)
+    a, b, c, d, e, f, g, h, i = column[BODY_RATE]
+    return quaternion, to_world(quaternion, (
+        a * first + b * second + c * third, d * first + e * second + f * third,
+        g * first + h * second + i * third))
+
+
+def _motions(form, columns, time):
+    """Return quaternions (4, k) and world rates (3, k) at one time or at times (k,)."""
+    elapsed = time - columns[START]
     pairs = _unit_pairs(*form.pairs(columns[MOTION], elapsed))
     quaternion = _orientations(columns[WORLD], pairs)
     rate = (columns[BODY_RATE].reshape(3, 3, -1) * np.array(_momentum(*pairs))).sum(axis=1)
-    # at the start, as given: momentum to rate loses digits in very thin bodies
     return quaternion, np.where(elapsed == 0, columns[RATE], to_world(quaternion, rate))

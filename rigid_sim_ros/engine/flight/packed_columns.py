@@ -56,7 +56,7 @@ class PackedColumns:
             return self.bodies, self.columns
         slots = self._slots[indices]
         places = np.flatnonzero(slots != ABSENT)
-        return places, self._columns[:, slots[places]]
+        return places, self._columns.take(slots[places], axis=1)
 
     def members(self, bodies):
         """Return those of bodies (k,) that are members, (m,)."""
@@ -111,3 +111,8 @@ def _grown(array, capacity):
     result = np.empty(array.shape[:-1] + (capacity,), dtype=array.dtype)
     result[..., :array.shape[-1]] = array
     return result
+
+
+def columns_of(table, indices):
+    """Return the columns `indices` of a table, an array (k,) or a slice: a view if a slice."""
+    return table[:, indices] if isinstance(indices, slice) else table.take(indices, axis=1)

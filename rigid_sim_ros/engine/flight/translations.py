@@ -16,6 +16,8 @@
 
 import numpy as np
 
+from rigid_sim_ros.engine.flight.packed_columns import columns_of
+
 START, POSITION, VELOCITY, HALF_ACCELERATION, ACCELERATION = (
     0, slice(1, 4), slice(4, 7), slice(7, 10), slice(10, 13))
 """Rows of the table."""
@@ -49,8 +51,12 @@ class Translations:
 
     def positions(self, elapsed, indices, out):
         """Write the positions [m] of bodies (k,), a slice or None for all, to `out` (3, k)."""
-        position, velocity, half_acceleration = (
-            self._all if indices is None else [part[:, indices] for part in self._all])
+        if indices is None:
+            position, velocity, half_acceleration = self._all
+        else:
+            table = columns_of(self._table, indices)
+            position, velocity, half_acceleration = (
+                table[POSITION], table[VELOCITY], table[HALF_ACCELERATION])
         if self._accelerates:
             np.multiply(half_acceleration, elapsed, out=out)
             out += velocity
@@ -61,7 +67,7 @@ class Translations:
 
     def velocities(self, elapsed, indices):
         """Return the velocities [m/s] of bodies (k,), None for all, (3, k)."""
-        table = self._table if indices is None else self._table[:, indices]
+        table = self._table if indices is None else columns_of(self._table, indices)
         if self._accelerates:
             return table[ACCELERATION] * elapsed + table[VELOCITY]
         return table[VELOCITY].copy()

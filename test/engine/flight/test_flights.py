@@ -291,3 +291,17 @@ def test_an_array_is_used_again_only_when_nobody_holds_it():
     assert arrays.take(3, FEWEST).ctypes.data == address
     assert arrays.take(4, FEWEST).shape == (4, FEWEST)
     assert len([arrays.take(3, FEWEST + number) for number in range(20)]) == 20
+
+
+def test_no_bodies_are_nothing_special():
+    moments, arguments = assorted(30)
+    flights = begun(moments, arguments)
+    none = np.zeros(0, dtype=int)
+    flights.begin(none, 0.0, *(values[:, none] for values in arguments))
+    assert flights.poses(1.0, none)[1].shape == (4, 0)
+    assert flights.velocities(1.0, none)[1].shape == (3, 0)
+    assert flights.motions(none, np.zeros(0))[1].shape == (4, 0)
+    assert flights.rate_bound(none, 0.0, 1.0).shape == (0,)
+    assert [part.shape for part in flights.poses_at_times(3, np.zeros(0))] == [(3, 0), (4, 0)]
+    assert flights.poses_at_times(1, np.zeros(0))[1].shape == (4, 0)
+    assert Flights(np.zeros((3, 0))).poses(1.0)[0].shape == (3, 0)
