@@ -125,7 +125,7 @@ def _lines(panel, rows, abscissa, ordinate):
     for axis in (panel.xaxis, panel.yaxis):
         axis.set_minor_formatter(NullFormatter())
     low, high = panel.get_xlim()
-    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 30 * low else (1,)))
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 100 * low else (1,)))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
 
 

@@ -16,7 +16,7 @@
 
 from pathlib import Path
 
-from rigid_sim_ros.benchmark.errors import BenchmarkError
+from rigid_sim_ros.benchmark.errors import BenchmarkError, chosen
 from rigid_sim_ros.benchmark.problems import PROBLEMS
 from rigid_sim_ros.benchmark.report import markdown_tables, terminal_table
 from rigid_sim_ros.benchmark.results import read_csv
@@ -30,6 +30,8 @@ def add_options(parser):
     come from one machine: the first file's facts are those that are written.
     """
     parser.add_argument('results', nargs='+', type=Path, metavar='RESULTS.csv')
+    parser.add_argument('--problems', nargs='+', metavar='PROBLEM', default=[],
+                        help='names of problems; default all that the files have')
     add_output_options(parser)
 
 
@@ -45,11 +47,13 @@ def add_output_options(parser):
 
 def run(options):
     """Run the command with its parsed options."""
+    wanted = chosen('problem', options.problems, list(PROBLEMS))
     cells, facts = {}, None
     for path in options.results:
         results, facts_there = _read(path)
         facts = facts or facts_there
-        cells.update({(row.problem, row.engine, row.rate_hz): row for row in results})
+        cells.update({(row.problem, row.engine, row.rate_hz): row for row in results
+                      if row.problem in wanted})
     results = sorted(cells.values(), key=lambda row: list(PROBLEMS).index(row.problem))
     for problem in dict.fromkeys(row.problem for row in results):
         print(terminal_table(problem, [row for row in results if row.problem == problem]),

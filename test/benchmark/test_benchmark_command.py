@@ -185,7 +185,8 @@ def test_report_joins_files_and_the_last_one_counts(tmp_path, capsys):
     write_csv(tmp_path / 'first.csv', SOME[:3], FACTS)
     write_csv(tmp_path / 'second.csv', [result(engine='mujoco', run_cpu_ms=7.5)], FACTS)
     assert main(['report', str(tmp_path / 'first.csv'), str(tmp_path / 'second.csv'),
-                 '--markdown', str(tmp_path / 'table.md'), '--plots', str(tmp_path)]) == 0
+                 '--problems', 'slide', '--markdown', str(tmp_path / 'table.md'),
+                 '--plots', str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[-2].split()[-1] == '7.5'
     assert '| 2.0e-06, 50 | 2.0e-06, 7.5 |' in (tmp_path / 'table.md').read_text()
     assert (tmp_path / 'error_slide.png').exists()
