@@ -44,7 +44,7 @@ import yaml  # noqa: E402
 
 SCENE = 'report_dynamics'
 TWIST = 'geometry_msgs/msg/TwistStamped'
-PATIENCE = 20.0
+PATIENCE = 15.0
 GRAPH = 'rigid_sim_ros.nodes.ros2_verbs.graph'
 
 
@@ -58,16 +58,24 @@ def process(tmp_path_factory):
 
 @pytest.fixture
 def command(process, monkeypatch, capsys):
-    """Return a function that carries out a command and gives exit code, output and errors."""
+    """Yield a function that carries out a command and gives exit code, output and errors."""
     monkeypatch.setenv('ROS_DOMAIN_ID', str(process.domain_id))
     monkeypatch.setattr(f'{GRAPH}.PATIENCE', PATIENCE)
     monkeypatch.setattr(f'{GRAPH}.STILLNESS', 0.5)
 
+    def give_up(number, frame):
+        raise TimeoutError('the command does not end')
+
     def carry_out(line):
+        signal.setitimer(signal.ITIMER_REAL, 1.5 * PATIENCE)
         code = run(shlex.split(line))
+        signal.setitimer(signal.ITIMER_REAL, 0)
         return code, *capsys.readouterr()
 
-    return carry_out
+    former = signal.signal(signal.SIGALRM, give_up)
+    yield carry_out
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, former)
 
 
 @pytest.fixture
@@ -233,11 +241,13 @@ def test_users_of_a_topic_are_counted(command):
     listed(command, 'topic info /rigid_sim/cmd_vel', set(text.splitlines()))
 
 
-def test_message_is_published_so_many_times(process, command, patient):
+def test_message_is_published_so_many_times_and_so_often(process, command, patient):
     with Client(process) as client:
         received = client.listen('~/poses')
-        text = output(command('topic pub -t 3 -r 50 /rigid_sim/poses geometry_msgs/PoseArray '
+        start = time.monotonic()
+        text = output(command('topic pub -t 3 -r 5 /rigid_sim/poses geometry_msgs/PoseArray '
                               "'{header: {frame_id: mine}}'"))
+        assert time.monotonic() - start >= 2 / 5
 
         def count():
             return [message.header.frame_id for message in received].count('mine')
