@@ -28,15 +28,15 @@ MANY = 256
 """From so many angles on the tangent is faster than sine and cosine, measured."""
 
 FLOATS = SimpleNamespace(
-    sqrt=math.sqrt, hypot=math.hypot, sin=math.sin, cos=math.cos, sinh=math.sinh,
-    cosh=math.cosh, log=math.log, atan=math.atan, copysign=math.copysign, minimum=min,
-    maximum=max, nearest=round, largest=float, where=lambda condition, a, b: a if condition else b)
+    sqrt=math.sqrt, hypot=math.hypot, sin=math.sin, cos=math.cos, atan=math.atan, log=math.log,
+    copysign=math.copysign, minimum=min, maximum=max, largest=float,
+    where=lambda condition, a, b: a if condition else b)
 """For plain floats."""
 
 ARRAYS = SimpleNamespace(
-    sqrt=np.sqrt, hypot=np.hypot, sin=np.sin, cos=np.cos, sinh=np.sinh,
-    cosh=np.cosh, log=np.log, atan=np.arctan, copysign=np.copysign, minimum=np.minimum,
-    maximum=np.maximum, nearest=np.rint, largest=np.max, where=np.where)
+    sqrt=np.sqrt, hypot=np.hypot, sin=np.sin, cos=np.cos, atan=np.arctan, log=np.log,
+    copysign=np.copysign, minimum=np.minimum, maximum=np.maximum, largest=np.max,
+    where=np.where)
 """For arrays, element by element; `largest` is the one that ends an iteration for all."""
 
 

@@ -16,7 +16,7 @@
 A free rotation as sums over multiples of a uniformly growing angle: k'^2 of at least 0.03.
 
 The attitude in the frame of the momentum is a swing, the shortest turn of the momentum's direction
-in the body onto axis 3, after a twist phi about it, whose rate is bounded and smooth:
+in the body onto axis 3, and then a twist phi about it, whose rate is bounded and smooth:
 
     phi' = L / I3 + (2 T / L - L / I3) / (1 + m3).
 
