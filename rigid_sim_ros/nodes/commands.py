@@ -102,7 +102,7 @@ class Commands:
         self.taken = 0
         """Commands carried out so far."""
         self.on_refused = lambda reason: None
-        """Called with the `Refused` of a command that cannot be carried out when its time comes."""
+        """Called with the `Refused` of a command that cannot be carried out when its time is."""
         self.clear()
 
     def clear(self):

@@ -17,13 +17,12 @@
 from dataclasses import replace
 import re
 
-import yaml
-
 from rigid_sim_ros.engine import CommandError
 from rigid_sim_ros.engine.commands import unit_quaternion, vector
 from rigid_sim_ros.nodes.counted_warnings import near_names, shown
 from rigid_sim_ros.scene import load_scene, SceneError, values
 from rigid_sim_ros.scene.overlap import deepest_overlap
+import yaml
 
 SOME_NAME = 'body'
 """What a body is called that comes without a name."""
@@ -103,7 +102,8 @@ class Entities:
         """
         Add a body under a name (its own if empty), or one like it if that is taken; return it.
 
-        The changes are as in `place`. Raises `NameTaken`, `BadPlace`, or `BadDescription` for what is no name.
+        The changes are as in `place`. Raises `NameTaken`, `BadPlace`, or
+        `BadDescription` for what is no name.
         """
         taken = frozenset(self._session.simulation.all_names)
         name = name or body.name

@@ -154,14 +154,14 @@ class SimulationNode:
         return self.control.step()
 
     def reset(self, time_from_zero=None, keep_bodies=False):
-        """Begin again as `Session.reset` does; with time as parameter `reset_time` says if None."""
+        """Begin again as `Session.reset` does; time as parameter `reset_time` says if None."""
         if time_from_zero is None:
             time_from_zero = self.parameters.reset_time
         self.recording.note_reset(self.session.time, time_from_zero)
         self._display.clear(self.session.time)
         self.control.reset(time_from_zero, keep_bodies)
 
-    def quit(self):
+    def end(self):
         """End as after a signal."""
         self._stop.requested = True
 

@@ -98,7 +98,7 @@ class StandardServices:
             return self._answer(response, type(response).ALREADY_IN_TARGET_STATE)
         self._stopped = False
         if wanted == state.STATE_QUITTING:
-            node.quit()
+            node.end()
         elif not node.set_paused(wanted != state.STATE_PLAYING):
             return self._answer(response, type(response).STATE_TRANSITION_ERROR, node.failure)
         elif wanted == state.STATE_STOPPED:

@@ -119,7 +119,7 @@ def test_lists_of_messages_are_filled():
     (TwistStamped, '{twist: {linear: {x: fast}}}', "twist.linear.x is 'fast'; allowed: a number"),
     (TwistStamped, '{twist: {linear: {x: }}}', 'twist.linear.x is None; allowed: a number'),
     (TwistStamped, '{twist: {linear: {x: true}}}', "twist.linear: The 'x' field must be of type"),
-    (TwistStamped, '{header: {stamp: {nanosec: -1}}}', "header.stamp: The 'nanosec' field must be"),
+    (TwistStamped, '{header: {stamp: {nanosec: -1}}}', "header.stamp: The 'nanosec' field must"),
     (TwistStamped, '{header: {frame_id: }}', "header: The 'frame_id' field must be of type 'str'"),
     (MultiDOFJointState, '{joint_names: a}', "joint_names is 'a'; allowed: a list"),
     (MultiDOFJointState, '{wrench: [{}, {forces: {}}]}', "there is no field 'wrench[1].forces'")])
@@ -262,7 +262,7 @@ def test_message_is_published_so_many_times_and_so_often(process, command, patie
 
 def test_services_are_called(command, patient):
     def call(name, request):
-        text = output(command(f"service call /rigid_sim/{name} std_srvs/srv/{request}"))
+        text = output(command(f'service call /rigid_sim/{name} std_srvs/srv/{request}'))
         return float(re.search(r"success=True, message='\w+ at (\d+\.\d+) s'", text)[1])
 
     paused = call('pause', "SetBool '{data: true}'")
