@@ -39,7 +39,7 @@ from rigid_sim_ros.nodes.ros2_verbs.message_text import (  # noqa: E402
 from rigid_sim_ros.nodes.ros2_verbs.topic_verbs import rate_text  # noqa: E402
 from rigid_sim_ros.scene import load_scene  # noqa: E402
 from rigid_sim_ros.topics import COMMANDS, PUBLISHED, SERVICES  # noqa: E402
-from sensor_msgs.msg import MultiDOFJointState  # noqa: E402
+from sensor_msgs.msg import Imu, MultiDOFJointState, PointCloud2  # noqa: E402
 import yaml  # noqa: E402
 
 SCENE = 'report_dynamics'
@@ -118,9 +118,14 @@ def test_lists_of_messages_are_filled():
      "there is no field 'twist.linaer'; allowed: linear, angular"),
     (TwistStamped, '{twist: {linear: {x: fast}}}', "twist.linear.x is 'fast'; allowed: a number"),
     (TwistStamped, '{twist: {linear: {x: }}}', 'twist.linear.x is None; allowed: a number'),
-    (TwistStamped, '{twist: {linear: {x: true}}}', "twist.linear: The 'x' field must be of type"),
-    (TwistStamped, '{header: {stamp: {nanosec: -1}}}', "header.stamp: The 'nanosec' field must"),
-    (TwistStamped, '{header: {frame_id: }}', "header: The 'frame_id' field must be of type 'str'"),
+    (TwistStamped, '{twist: {linear: {x: true}}}', 'twist.linear.x is True; allowed: double'),
+    (TwistStamped, '{header: {stamp: {nanosec: -1}}}',
+     'header.stamp.nanosec is -1; allowed: uint32'),
+    (TwistStamped, '{header: {frame_id: }}', 'header.frame_id is None; allowed: string'),
+    (Imu, '{orientation_covariance: [1, 2]}',
+     'orientation_covariance is [1, 2]; allowed: double[9]'),
+    (PointCloud2, '{data: [1, 256]}', 'data is [1, 256]; allowed: sequence<uint8>'),
+    (PointCloud2, '{data: [a]}', "data is ['a']; allowed: sequence<uint8>"),
     (MultiDOFJointState, '{joint_names: a}', "joint_names is 'a'; allowed: a list"),
     (MultiDOFJointState, '{wrench: [{}, {forces: {}}]}', "there is no field 'wrench[1].forces'")])
 def test_text_that_is_no_message_is_refused_in_one_line(message_type, text, error):

@@ -60,10 +60,12 @@ def _message(message_type, values, place):
         if name not in types:
             raise VerbError(f'there is no field {inside!r}; allowed: {", ".join(types) or "none"}')
         fields[name] = _value(types[name], value, inside)
-    try:
-        return message_type(check_fields=True, **fields)
-    except AssertionError as error:
-        raise VerbError(' '.join(f'{place}: {error}'.lstrip(': ').split())) from None
+        try:
+            message_type(check_fields=True, **{name: fields[name]})
+        except (AssertionError, OverflowError, TypeError, ValueError):
+            allowed = message_type.get_fields_and_field_types()[name]
+            raise VerbError(f'{inside} is {value!r}; allowed: {allowed}') from None
+    return message_type(**fields)
 
 
 def _value(field_type, value, place):
