@@ -176,8 +176,15 @@ class Islands:
         both = is_member[a] & is_member[b]
         labels = component_labels(bodies.count, a[both], b[both])
         of_pair, of_member = labels[np.where(is_member[a], a, b)], labels[members]
-        return [Island(self._world, members[of_member == label], a[of_pair == label],
-                       b[of_pair == label]) for label in np.unique(of_member)]
+        return [self._island(members[of_member == label], a[of_pair == label],
+                             b[of_pair == label]) for label in np.unique(of_member)]
+
+    def _island(self, members, body_a, body_b):
+        """Return the island there was of these members (m,) and pairs (p,), or a new one."""
+        for island in self._islands:
+            if np.array_equal(island.members, members) and island.covers(body_a, body_b):
+                return island
+        return Island(self._world, members, body_a, body_b, self._islands)
 
     def _reach(self, state, start, end):
         """Return how far points of bodies may come until `end`, (n,) [m]; zero if they rest."""

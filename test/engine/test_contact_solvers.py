@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 from rigid_sim_ros.engine.solvers import ContactProblem, solve
-from rigid_sim_ros.engine.solvers.gauss_seidel import sweeps
+from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones
 from rigid_sim_ros.engine.solvers.single import friction_under, solve_one
 
 CORNERS = np.array([(x, y, -0.5) for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
@@ -135,11 +135,28 @@ def test_a_guess_changes_nothing():
         np.testing.assert_allclose(solve(problem, guess).force, force, atol=1e-10)
 
 
-def test_gauss_seidel_finds_the_motion():
-    """The fallback meets the same motion, here where contacts are not redundant."""
-    problem = problem_of(CORNERS[:3], (1.0, 0.3, -0.4), (0.1, -0.2, 3.0), 0.3)
-    force = sweeps(problem, problem.response, problem.free, np.zeros(9), 500)
-    np.testing.assert_allclose(force, solve(problem).force, atol=1e-9)
+def test_projected_gradient_finds_the_motion():
+    """The solver of piles meets the same motion, here with redundant contacts."""
+    problem = problem_of(CORNERS, (1.0, 0.3, -0.4), (0.1, -0.2, 3.0), 0.3)
+    step = 0.99 / np.linalg.eigvalsh(problem.response)[-1]
+    force, _, residual = accelerated(
+        problem.response.__matmul__, step, Cones(problem.friction), problem.free, np.zeros(12),
+        1e-12, 2000)
+    assert residual < 1e-12
+    assert violation(problem.response, problem.free, problem.friction, force) < 1e-9
+    np.testing.assert_allclose(problem.response @ force,
+                               problem.response @ solve(problem).force, atol=1e-7)
+
+
+def test_contacts_that_hardly_slide():
+    """Two blocks of contacts at the edge of their cones: Newton's circles are broken."""
+    random = np.random.default_rng(0)
+    for _ in range(30):
+        points = np.concatenate((CORNERS, CORNERS + 0.01 * random.normal(size=(4, 3))))
+        linear = np.array((0.2999, 0.0, -1.0)) + 1e-6 * random.normal(size=3)
+        problem = problem_of(points, linear, 1e-6 * random.normal(size=3), 0.3)
+        force = solve(problem).force
+        assert violation(problem.response, problem.free, problem.friction, force) < 1e-3
 
 
 @settings(max_examples=200, deadline=None, derandomize=True)

@@ -21,8 +21,12 @@ import numpy as np
 from rigid_sim_ros.engine.contacts import Contacts
 from rigid_sim_ros.engine.lasting_contact import cut, scales as units
 from rigid_sim_ros.engine.lasting_contact.automaton import OnPlane, plane_of
+from rigid_sim_ros.engine.lasting_contact.pile import Pile
 from rigid_sim_ros.engine.lasting_contact.rest import at_rest
 from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits, push_out, second_half
+
+FEW = 3
+"""Bodies that are stepped to second order; more are a pile."""
 
 _SHORTEST = 1e-9
 """Part of a step that is not worth taking: bounds on velocities divide by it."""
@@ -52,7 +56,11 @@ def advance_island(island, state, start, duration):
     high order (see `automaton`). For all else the duration is one step, or equal parts if
     something is so fast that it could pass through something thin.
     """
-    found = _on_plane(island, state, start, duration) if island.member_count == 1 else None
+    found = None
+    if island.member_count == 1:
+        found = _on_plane(island, state, start, duration)
+    elif island.member_count > FEW:
+        found = _piled(island, state, start, duration)
     if found is None:
         found = _stepped(island, state, start, duration)
     touching, resting = found
@@ -72,6 +80,15 @@ def _on_plane(island, state, start, duration):
     return island.automata[pair].advance(state, start, duration)
 
 
+def _piled(island, state, start, duration):
+    """Return (closed contacts, resting) of many bodies after a step."""
+    if island.pile is None:
+        island.pile = Pile(island, island.older_piles)
+        island.older_piles = ()
+    island.world.work.contact_steps += 1
+    return island.pile.advance(state, start, duration)
+
+
 def _stepped(island, state, start, duration):
     """Return (closed contacts, resting) after steps."""
     free = island.free_motion(state)
@@ -80,14 +97,19 @@ def _stepped(island, state, start, duration):
     parts = _parts(island, free, motion, duration)
     step = duration / parts
     limits = Limits.of(scales, step)
-    contacts = island.find_contacts(motion, limits.margin(step))
+    if island.end is not None and parts == 1 and motion.same(island.end[0]):
+        contacts = island.end[1]
+    else:
+        contacts = island.find_contacts(motion, limits.margin(step))
     for part in range(parts):
         motion, contacts = _advance(island, free, scales, limits, motion, contacts,
                                     start + part * step, step)
         island.world.work.contact_steps += 1
     touching = contacts.select(np.flatnonzero(contacts.separation < limits.touch_gap))
     resting = at_rest(island, free, scales, motion, touching)
-    island.scatter(motion.stopped() if resting else motion, state)
+    motion = motion.stopped() if resting else motion
+    island.end = motion, contacts
+    island.scatter(motion, state)
     return touching, resting
 
 

@@ -41,20 +41,32 @@ class Island:
         The indices of its moving bodies.
     pairs_a, pairs_b : (p,) int
         Pairs that may touch, at least one of each a member; what is not a member does not move.
+    older : list of Island
+        Those it takes the place of: what they remember saves it time.
 
     """
 
-    def __init__(self, world, members, pairs_a, pairs_b):
+    def __init__(self, world, members, pairs_a, pairs_b, older=()):
         self.world = world
         self.members = np.asarray(members)
         others = np.setdiff1d(np.concatenate((pairs_a, pairs_b)), members)
         self.columns = np.concatenate((self.members, others)).astype(int)
         self.bodies = _own_bodies(world.bodies, self.columns, len(self.members))
+        self._keys = pairs_a * world.bodies.count + pairs_b
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
+        self.end = None
+        """The `Motion` at the end of the last step and the contacts near it."""
+        self.pile = None
+        """What many members keep from step to step."""
+        self.older_piles = [island.pile for island in older if island.pile is not None]
+
+    def covers(self, pairs_a, pairs_b):
+        """Return whether all these pairs (p,), as for the constructor, are looked after."""
+        return bool(np.isin(pairs_a * self.world.bodies.count + pairs_b, self._keys).all())
 
     @property
     def member_count(self):
@@ -96,6 +108,14 @@ class Island:
         radius = np.where(np.isfinite(radius), radius, 0.0)
         return duration * (_length(motion.linear) + radius * _length(motion.angular)
                            + duration * _length(free.acceleration))
+
+    def closing(self, motion):
+        """Return bounds (p,) of how fast [m/s] the points of pairs approach or pass each other."""
+        a, b = self.pairs.pairs_a, self.pairs.pairs_b
+        radius = self.bodies.bounding_radius
+        turning = np.where(np.isfinite(radius), radius, 0.0) * _length(motion.angular)
+        linear = motion.linear
+        return _length(linear[:, b] - linear[:, a]) + turning[a] + turning[b]
 
     def find_contacts(self, motion, margin):
         """Return the contacts (own columns) with gaps below a margin [m]."""

@@ -41,6 +41,13 @@ class Motion:
     angular: np.ndarray
     """(3, n) [rad/s], world axes; likewise."""
 
+    def same(self, other):
+        """Return whether this is the same motion to the last bit."""
+        return (np.array_equal(self.position, other.position)
+                and np.array_equal(self.linear, other.linear)
+                and np.array_equal(self.orientation, other.orientation)
+                and np.array_equal(self.angular, other.angular))
+
     def struck(self, touched, linear, angular):
         """Return the motion with changes (3, m) of the velocities of bodies `touched` (m,)."""
         after_linear, after_angular = self.linear.copy(), self.angular.copy()
@@ -113,13 +120,21 @@ class FreeMotion:
         position = struck.position + time * struck.linear
         orientation = rotation.normalize(rotation.multiply(
             rotation.from_rotation_vector(time * struck.angular), struck.orientation))
-        angular = struck.angular
-        if not self._plain:
-            before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
-            given = start.angular + struck.angular - kicked.angular
-            momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
-                before, given)) + time * self.torque
-            angular = rotation.transform(after, self._inverse_inertia
-                                         * rotation.transform_transposed(after, momentum))
+        angular = self.carried(start, kicked, struck, orientation, time)
         return Motion(position, orientation, struck.linear + 0.5 * time * self.acceleration,
                       angular)
+
+    def carried(self, start, kicked, struck, orientation, time):
+        """
+        Return the rates (3, n) at the end of a step of `time` [s]: the angular momentum's.
+
+        It is that of `start`, what contacts gave from `kicked` to `struck`, and the torques'.
+        """
+        if self._plain:
+            return struck.angular
+        before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
+        given = start.angular + struck.angular - kicked.angular
+        momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
+            before, given)) + time * self.torque
+        return rotation.transform(
+            after, self._inverse_inertia * rotation.transform_transposed(after, momentum))

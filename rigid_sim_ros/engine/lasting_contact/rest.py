@@ -22,20 +22,58 @@ solved as an impact, and what velocity is left is the acceleration they cannot h
 
 import numpy as np
 
+from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact import scales as units
 from rigid_sim_ros.engine.lasting_contact.step import second_half
+from rigid_sim_ros.engine.solvers import contact_rows, ContactProblem
+from rigid_sim_ros.engine.solvers.linear import solve_guessed
+
+MOST_CONTACTS = 200
+"""Contacts of which `stands` makes a dense matrix."""
+
+
+def slow(island, scales, motion):
+    """Return whether no point of the members is faster than what counts as rest."""
+    count = island.member_count
+    radius = island.bodies.bounding_radius[:count]
+    limit = units.REST * scales.speed
+    return bool(np.abs(motion.linear[:, :count]).max() <= limit
+                and (np.abs(motion.angular[:, :count]) * radius).max() <= limit)
+
+
+def stands(island, free, scales, motion, contacts):
+    """
+    Return whether touching contacts that all press and stick hold an island of many bodies.
+
+    It is a quick test that says no where some of the contacts are idle or at their limit.
+    """
+    if not 0 < contacts.count <= MOST_CONTACTS:
+        return False
+    bodies = island.bodies
+    rows = contact_rows(bodies, contacts, motion.position, motion.orientation)
+    pull = free.kicked(motion.stopped(), 1.0)
+    problem = ContactProblem(
+        rows.response(), rows.motion(pull.linear, pull.angular),
+        mixed_friction(bodies.friction[contacts.body_a], bodies.friction[contacts.body_b]),
+        np.zeros(contacts.count), np.zeros((2, contacts.count)))
+    solution = solve_guessed(problem, np.ones(contacts.count, dtype=bool), units.EQUILIBRIUM)
+    if solution is None:
+        return False
+    left = pull.struck(rows.touched, *rows.change(solution.force))
+    return _held(island, scales, left)
 
 
 def at_rest(island, free, scales, motion, contacts):
     """Return whether the island rests in this `Motion` on these touching contacts."""
+    if not contacts.count or not slow(island, scales, motion):
+        return False
+    return _held(island, scales, second_half(island, free.kicked(motion.stopped(), 1.0), contacts))
+
+
+def _held(island, scales, left):
+    """Return whether hardly any velocity is left in a `Motion` after a second of all forces."""
     count = island.member_count
     radius = island.bodies.bounding_radius[:count]
-    linear, angular = motion.linear[:, :count], motion.angular[:, :count]
-    slow = units.REST * scales.speed
-    if (np.abs(linear).max() > slow or (np.abs(angular) * radius).max() > slow
-            or not contacts.count):
-        return False
-    left = second_half(island, free.kicked(motion.stopped(), 1.0), contacts)
     allowed = units.EQUILIBRIUM * scales.acceleration
-    return (np.abs(left.linear[:, :count]).max() <= allowed
-            and (np.abs(left.angular[:, :count]) * radius).max() <= allowed)
+    return bool(np.abs(left.linear[:, :count]).max() <= allowed
+                and (np.abs(left.angular[:, :count]) * radius).max() <= allowed)

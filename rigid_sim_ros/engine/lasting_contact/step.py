@@ -37,6 +37,10 @@ from rigid_sim_ros.engine.narrow_phase import gap_acceleration_bias
 from rigid_sim_ros.engine.solvers import contact_rows, ContactProblem, solve
 
 
+_ACCURACY = 1e-11
+"""Of the change of velocities in a step, to which it is solved: far less than the step's error."""
+
+
 class Limits(NamedTuple):
     """The `Scales` of an island for one step; parts of a step use those of the whole."""
 
@@ -129,6 +133,6 @@ def _strike(island, motion, contacts, rows, bias, slip):
     free = rows.motion(motion.linear, motion.angular) + bias
     friction = mixed_friction(bodies.friction[contacts.body_a], bodies.friction[contacts.body_b])
     solution = solve(ContactProblem(rows.response(), free, friction, np.zeros(contacts.count),
-                                    slip))
+                                    slip), accuracy=_ACCURACY)
     island.world.work.solver_iterations += solution.iterations
     return motion.struck(rows.touched, *rows.change(solution.force))

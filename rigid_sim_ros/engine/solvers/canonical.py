@@ -45,15 +45,17 @@ def compliance_of(problem):
     return COMPLIANCE * diagonal[:count].sum() / count
 
 
-def refine(solve, problem, compliance):
+def refine(solve, problem, compliance, accuracy):
     """
     Return the force that is left when the compliance is refined away, or None if a pass fails.
+
+    Away is when it makes less motion than `accuracy` of the free motion.
 
     `solve(free, guess)` returns the force for a free motion less compliance * reference, or None;
     the guess is None or the force of the pass before.
     """
     free = problem.free
-    tolerance = ACCURACY * np.abs(free).max()
+    tolerance = accuracy * np.abs(free).max()
     reference = np.zeros_like(free)
     reference[:problem.count] = problem.floor
     guess = None

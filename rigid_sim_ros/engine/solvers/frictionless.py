@@ -27,7 +27,7 @@ from rigid_sim_ros.engine.solvers.problem import Solution
 _MAX_ITERATIONS = 50
 
 
-def solve_frictionless(problem):
+def solve_frictionless(problem, accuracy):
     """Return the `Solution` of a problem whose frictions are all zero, or None."""
     count = problem.count
     compliance = canonical.compliance_of(problem)
@@ -47,7 +47,7 @@ def solve_frictionless(problem):
             closed = found
         return None
 
-    force = canonical.refine(solve, problem, compliance)
+    force = canonical.refine(solve, problem, compliance, accuracy)
     return None if force is None else Solution(force, iterations)
 
 

@@ -24,7 +24,7 @@ from rigid_sim_ros.engine.solvers import canonical
 from rigid_sim_ros.engine.solvers.problem import Solution
 
 
-def solve_guessed(problem, closed):
+def solve_guessed(problem, closed, accuracy):
     """
     Return the `Solution` in which exactly the contacts `closed` (k,) bool are closed, or None.
 
@@ -52,7 +52,7 @@ def solve_guessed(problem, closed):
         force = inverse @ wanted if force is None else force + inverse @ (wanted - matrix @ force)
         return force if _holds(problem, closed, force, free, compliance) else None
 
-    force = canonical.refine(solve, problem, compliance)
+    force = canonical.refine(solve, problem, compliance, accuracy)
     return None if force is None else Solution(force, passes)
 
 

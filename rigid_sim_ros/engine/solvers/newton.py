@@ -16,111 +16,148 @@
 Semismooth Newton on the contact conditions, written as equations (Alart and Curnier 1991).
 
 Each condition is 'force equals its projection on what is allowed', with the normal force allowed
-above its floor and the friction inside its disc. The derivative of force less projection is
+above its floor and the friction inside its disc. Newton's method on that is a search for which
+contacts are closed, stick and slide, and along what direction.
 
-    by_force + by_motion @ response
-
-with both matrices block-diagonal, a contact's 3 x 3 each. They are made contact after contact in
-plain floats, which is three times faster than arrays for the few contacts this is meant for.
+The inverse of one iteration is kept for the next as long as that gains a digit: near the end, and
+while the compliance is refined away (see `canonical`), nothing needs to be inverted again.
 """
 
 from functools import lru_cache
-from math import sqrt
 
 import numpy as np
 
-from rigid_sim_ros.engine.solvers import canonical
-
-MAX_ITERATIONS = 40
-"""From nothing 4 to 16 do; what has not converged by then goes in circles."""
+MAX_ITERATIONS = 25
+"""From nothing 2 to 10 do; what has not converged by then mostly goes in circles."""
 
 _UNDAMPED = 6
 _DAMPED_EVERY = 7
-"""After six full steps each seventh is halved, which breaks most circles."""
+"""After six full steps each seventh is halved, which breaks many circles."""
+
+_GAIN = 0.1
+"""An inverse is kept while it shrinks the residual to this part or less."""
+
+_TINY = np.finfo(float).tiny
 
 
-def newton(problem, matrix, free, force):
+class Newton:
     """
-    Return (force, iterations): the solution near a guess (3k,), or None in place of the force.
+    The conditions of one `ContactProblem` with a compliance in every row.
 
-    The matrix is the response with its compliance, `free` the free motion that goes with it.
+    Parameters
+    ----------
+    problem : ContactProblem
+    compliance : float
+
     """
-    count = problem.count
-    diagonal = matrix.ravel()[::3 * count + 1].reshape(3, count)
-    stiffness = np.array((diagonal[0], np.maximum(diagonal[1], diagonal[2])))
-    constants = list(zip(*(1 / stiffness).tolist(), problem.friction.tolist(),
-                         problem.floor.tolist(), problem.slip.T.tolist()))
-    weight = stiffness[[0, 1, 1]].ravel()
-    motion_places, force_places = _places(count)
-    # the rounding of matrix @ force is a floor below which no residual gets
-    rounding = 1e-16 * 3 * count * float(diagonal.max())
-    tolerance = canonical.ACCURACY * float(np.abs(free).max())
-    by_motion = np.zeros((3 * count, 3 * count))
-    by_force = np.zeros((3 * count, 3 * count))
-    for iteration in range(MAX_ITERATIONS):
-        motion = free + matrix @ force
-        rows = [_linearise(f, u, *each) for f, u, each in zip(
-            force.reshape(3, count).T.tolist(), motion.reshape(3, count).T.tolist(), constants)]
-        rows = np.array(rows).T
-        residual = rows[:3].ravel()
-        size = float(np.abs(residual * weight).max())
-        if size <= tolerance + rounding * float(np.abs(force).max()):
-            return force, iteration
-        by_motion.ravel()[motion_places] = rows[3:8]
-        by_force.ravel()[force_places] = rows[8:]
+
+    def __init__(self, problem, compliance):
+        """See the class."""
+        self.iterations = 0
+        """Linear systems solved so far."""
+        self._problem = problem
+        count = self._count = problem.count
+        self._matrix = problem.response.copy()
+        diagonal = self._matrix.ravel()[::3 * count + 1]
+        diagonal += compliance
+        stiffness = diagonal.reshape(3, count).copy()
+        np.maximum(stiffness[1], stiffness[2], out=stiffness[1])
+        stiffness[2] = stiffness[1]
+        self._weight = stiffness.ravel()
+        self._steps = 1 / stiffness
+        known = problem.slip.any(axis=0)
+        self._known = known if known.any() else None
+        # the rounding of matrix @ force is a floor below which no residual gets
+        self._rounding = 3e-16 * count * float(diagonal.max())
+        self._inverse = None
+
+    def solve(self, free, force, accuracy):
+        """
+        Return the force (3k,) near a guess, or None.
+
+        `free` is the free motion that goes with the compliance; the residual that is left is at
+        most `accuracy` of its largest component.
+        """
+        tolerance = accuracy * float(np.abs(free).max())
+        before = 0.0
+        for iteration in range(MAX_ITERATIONS):
+            target, *where = self._project(free, force)
+            residual = force - target.ravel()
+            size = float(np.abs(residual * self._weight).max())
+            if size <= tolerance + self._rounding * float(np.abs(force).max()):
+                return force
+            if self._inverse is None or iteration > 0 and size > _GAIN * before:
+                if not self._linearise(force, *where):
+                    return None
+            change = self._inverse @ residual
+            if iteration > _UNDAMPED and iteration % _DAMPED_EVERY == 0:
+                change *= 0.5
+            force = force - change
+            before = size
+        return None
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _project(self, free, force):
+        """
+        Return the projection (3, k) of a force on what is allowed, and where it was made.
+
+        That is which contacts are closed and which slide, (k,) bool, the directions of friction
+        where they do, (2, k), and how much of its length is left, (k,): 1 where they stick.
+        """
+        problem = self._problem
+        target = force.reshape(3, -1) - self._steps * (free + self._matrix @ force).reshape(3, -1)
+        drawn = target[1:]
+        limit = problem.friction * np.maximum(force[:self._count], 0.0)
+        length = np.sqrt((drawn * drawn).sum(axis=0)) + _TINY
+        slides = length > limit
+        unit = drawn / length
+        left = np.where(slides, limit / length, 1.0)
+        if self._known is not None:
+            slides = slides | self._known
+            unit = np.where(self._known, -problem.slip, unit)
+            left = np.where(self._known, 0.0, left)
+        closed = target[0] > problem.floor
+        np.maximum(target[0], problem.floor, out=target[0])
+        target[1:] = np.where(slides, limit * unit, drawn)
+        return target, closed, slides, unit, left
+
+    def _linearise(self, force, closed, slides, unit, left):
+        """
+        Invert the derivative of force less projection; return whether that can be done.
+
+        The derivative of the projection by its target is 1 where a contact is closed or sticks;
+        where it slides it is what is left of the length, across the direction only.
+        """
+        count = self._count
+        matrix = self._matrix.reshape(3, count, -1)
+        first, second = unit
+        slope_11 = np.where(slides, left * second * second, 1.0)
+        slope_22 = np.where(slides, left * first * first, 1.0)
+        slope_12 = np.where(slides, -left * first * second, 0.0)
+        step_n, step_t, _ = self._steps
+        rows = np.empty((3, count, 3 * count))
+        np.multiply((closed * step_n)[:, None], matrix[0], out=rows[0])
+        for row, (one, other) in enumerate(((slope_11, slope_12), (slope_12, slope_22)), start=1):
+            rows[row] = ((one * step_t)[:, None] * matrix[1]
+                         + (other * step_t)[:, None] * matrix[2])
+        # the limit of friction grows with the normal force
+        grows = np.where(slides & (force[:count] > 0.0), self._problem.friction, 0.0)
+        rows.ravel()[_places(count)] += np.concatenate((
+            ~closed, 1.0 - slope_11, -slope_12, -slope_12, 1.0 - slope_22,
+            -grows * first, -grows * second))
+        self.iterations += 1
         try:
-            change = np.linalg.solve(by_motion @ matrix + by_force, residual)
+            self._inverse = np.linalg.inv(rows.reshape(3 * count, -1))
         except np.linalg.LinAlgError:
-            return None, iteration
-        if iteration > _UNDAMPED and iteration % _DAMPED_EVERY == 0:
-            change *= 0.5
-        force = force - change
-    return None, MAX_ITERATIONS
-
-
-def _linearise(force, motion, step_n, step_t, friction, floor, slip):
-    """
-    Return one contact's equations: 3 residuals, 5 derivatives by motion, 7 by force.
-
-    The places they have in the matrices are those of `_places`.
-    """
-    normal, first, second = force
-    motion_n, motion_1, motion_2 = motion
-    if normal - floor > step_n * motion_n:
-        head, motion_nn, force_nn = step_n * motion_n, step_n, 0.0
-    else:
-        head, motion_nn, force_nn = normal - floor, 0.0, 1.0
-    limit, grows = (friction * normal, friction) if normal > 0.0 else (0.0, 0.0)
-    slip_1, slip_2 = slip
-    if slip_1 or slip_2:
-        return (head, first + limit * slip_1, second + limit * slip_2,
-                motion_nn, 0.0, 0.0, 0.0, 0.0,
-                force_nn, 1.0, 0.0, 0.0, 1.0, grows * slip_1, grows * slip_2)
-    target_1, target_2 = first - step_t * motion_1, second - step_t * motion_2
-    length = sqrt(target_1 * target_1 + target_2 * target_2)
-    if length <= limit:
-        return (head, step_t * motion_1, step_t * motion_2,
-                motion_nn, step_t, 0.0, 0.0, step_t,
-                force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    unit_1, unit_2 = target_1 / length, target_2 / length
-    # derivative of the projection by its target: across the direction only
-    turn = limit / length
-    turn_11, turn_22 = turn * unit_2 * unit_2, turn * unit_1 * unit_1
-    turn_12 = -turn * unit_1 * unit_2
-    return (head, first - limit * unit_1, second - limit * unit_2,
-            motion_nn, step_t * turn_11, step_t * turn_12, step_t * turn_12, step_t * turn_22,
-            force_nn, 1.0 - turn_11, -turn_12, -turn_12, 1.0 - turn_22,
-            -grows * unit_1, -grows * unit_2)
+            return False
+        return True
 
 
 @lru_cache(maxsize=64)
 def _places(count):
-    """Return where derivatives by motion (5, k) and force (7, k) go in flat (3k, 3k) matrices."""
+    """Return where, (7k,), nn, 11, 12, 21, 22, 1n and 2n of each contact are in (3k, 3k)."""
     contact = np.arange(count)
-
-    def place(row, column):
-        return (row * count + contact) * 3 * count + column * count + contact
-
-    tangential = [place(1, 1), place(1, 2), place(2, 1), place(2, 2)]
-    return (np.array([place(0, 0), *tangential]),
-            np.array([place(0, 0), *tangential, place(1, 0), place(2, 0)]))
+    return np.concatenate([
+        (row * count + contact) * 3 * count + column * count + contact
+        for row, column in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2), (1, 0), (2, 0))])

@@ -102,23 +102,43 @@ def contact_rows(bodies, contacts, position, orientation):
     slots[touched] = np.arange(len(touched))
     touched = np.array(touched, dtype=int)
     frames = rotation.matrix(orientation[:, touched])
-    scale = np.sqrt(np.stack((
-        *(bodies.inverse_mass[touched],) * 3, *bodies.inverse_inertia[:, touched])))
+    scale = mass_scale(bodies, touched)
     axes = np.stack((contacts.normal, *tangents(contacts.normal)))
-    arm_a = contacts.point - position[:, a]
-    arm_b = contacts.point - position[:, b]
+    arms = contacts.point - position[:, a], contacts.point - position[:, b]
     count = len(a)
     # one column of bodies too many takes what acts on fixed ones
     rows = np.zeros((3, count, len(touched) + 1, 6))
-    for body, arm, sign in ((a, arm_a, -1.0), (b, arm_b, 1.0)):
+    for body, arm, sign in ((a, arms[0], -1.0), (b, arms[1], 1.0)):
         which = np.flatnonzero(body < moving)
         slot = slots[body[which]]
-        direction = axes[:, :, which]
-        # rotation.cross wants the components first
-        turn = rotation.cross(arm[:, None, which], direction.transpose(1, 0, 2))
-        turn = rotation.transform_transposed(frames[:, :, None, slot], turn)
-        size = sign * scale[:, slot]
-        rows[:, which, slot, :3] = (direction * size[:3]).transpose(0, 2, 1)
-        rows[:, which, slot, 3:] = (turn * size[3:, None]).transpose(1, 2, 0)
+        rows[:, which, slot] = scaled_rows(
+            axes[:, :, which], arm[:, which], frames[:, :, slot], sign * scale[:, slot])
     scaled = rows[:, :, :-1].reshape(3 * count, -1)
-    return ContactRows(touched, axes, arm_a, arm_b, a, b, scaled, scale.T.ravel(), frames)
+    return ContactRows(touched, axes, *arms, a, b, scaled, scale.T.ravel(), frames)
+
+
+def mass_scale(bodies, indices):
+    """Return sqrt(M^-1) of bodies (m,): (6, m), three linear and three principal angular."""
+    return np.sqrt(np.stack((*(bodies.inverse_mass[indices],) * 3,
+                             *bodies.inverse_inertia[:, indices])))
+
+
+def scaled_rows(axes, arm, frames, scale):
+    """
+    Return rows J sqrt(M^-1) of one side of contacts, (3, k, 6): contact axes, contacts, columns.
+
+    Parameters
+    ----------
+    axes : (3, 3, k): axes[c] are the k unit vectors (3, k) of row c
+    arm : (3, k) [m] from the centre of the body to the point
+    frames : (3, 3, k) rotation matrices of the body
+    scale : (6, k) its `mass_scale`, negative for side a
+
+    """
+    rows = np.empty((3, arm.shape[1], 6))
+    rows[:, :, :3] = (axes * scale[:3]).transpose(0, 2, 1)
+    # rotation.cross and transform_transposed want components first
+    turn = rotation.transform_transposed(
+        frames[:, :, None], rotation.cross(arm[:, None], axes.transpose(1, 0, 2)))
+    rows[:, :, 3:] = (turn * scale[3:, None]).transpose(1, 2, 0)
+    return rows

@@ -1,0 +1,229 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Steps of piles: islands of many bodies, of first order, with an iterative solver.
+
+A step is semi-implicit: velocities by forces and contact impulses, poses by the new velocities,
+overlaps pushed out apart from that. Contacts are found anew when something has moved enough; until
+then their gaps are followed along. Contacts ask u_n >= -gap / h, so that they close softly within
+a step, or u_n >= e u if they approach faster than a limit and close in it. Redundant forces are
+shared out as the solver comes upon them, which is not the canonical choice of small islands.
+"""
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
+from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
+from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
+from rigid_sim_ros.engine.solvers.accelerated import accelerated
+
+ITERATIONS = 60
+"""Of the solver in a step, at most; what hardly moves needs a few."""
+
+ACCURACY = 1e-5
+"""Of what the acceleration scale does to velocities in a step: where the solver stops."""
+
+MARGIN = 0.02
+"""Of the length scale: contacts are known this far off, and further where it is faster."""
+
+KEPT_STEPS = 4
+"""Steps for which contacts are expected to last; more cost contacts, less cost finding them."""
+
+TURN = 0.05
+"""Angle [rad] after which contacts are found anew: gaps are followed to first order only."""
+
+OVERLAP = 3e-4
+"""Of the length scale: overlap that is left; it keeps contacts closed."""
+
+TESTED_STEPS = 12
+"""Of so many steps one begins with a test whether all stands as it is, if it is slow."""
+
+QUIET_TIME = 0.25
+"""Time [s] all bodies must have been where they are to rest, times the root of metres of length."""
+
+QUIET_WAY = 2e-3
+"""Of the length scale: moves that do not count."""
+
+_NEVER = 1e9
+"""What is asked for of points that are not there."""
+
+_PRESSED = 1e-200
+"""Normal force that is none: the solver never lets it be zero."""
+
+
+class Pile:
+    """
+    What an `Island` of many bodies keeps from step to step.
+
+    Parameters
+    ----------
+    island : Island
+    older : list of Pile
+        Of the islands it was made of, for a warm start.
+
+    """
+
+    def __init__(self, island, older):
+        """See the class."""
+        self._island = island
+        self._sources = [pile.impulses() for pile in older if pile.contacts is not None]
+        self.quiet = Quiet(island.members)
+        for pile in older:
+            self.quiet.take_over(pile.quiet)
+        self.contacts = None
+        self._forces = None
+        self._turned = 0.0
+        self._room = None
+        self._steps = 0
+
+    def advance(self, state, start, duration):
+        """
+        Take one step of `duration` [s] from time `start` [s], unless all stands still.
+
+        Returns (closed contacts in columns of the island, resting) and puts the members' columns
+        into the `State`.
+        """
+        island = self._island
+        free = island.free_motion(state)
+        scales = island.scales(free)
+        motion = island.gather(state)
+        if self._steps % TESTED_STEPS == 0 and slow(island, scales, motion):
+            contacts = island.find_contacts(motion, 2 * OVERLAP * scales.length)
+            if stands(island, free, scales, motion, contacts):
+                island.scatter(motion.stopped(), state)
+                return contacts, True
+        self._steps += 1
+        closing = duration * island.closing(motion)
+        if self.contacts is None or (self._room < closing).any() or self._turned > TURN:
+            motion = self._renew(motion, free, scales, closing, duration)
+        self._room -= closing
+        motion, closed = self._step(motion, free, scales, start, duration)
+        radius = island.bodies.bounding_radius[:island.member_count]
+        quiet = self.quiet.shortest(start + duration, motion, radius, QUIET_WAY * scales.length)
+        resting = quiet > QUIET_TIME * scales.length ** 0.5
+        island.scatter(motion.stopped() if resting else motion, state)
+        return closed, resting
+
+    def impulses(self):
+        """Return (keys, points, impulses (3, k)) of the last step; keys are those of the scene."""
+        found, columns = self.contacts.contacts, self._island.columns
+        force, axes = self.contacts.forces(self._forces), self.contacts.axes
+        world = axes[0] * force[0] + axes[1] * force[1] + axes[2] * force[2]
+        count = self._island.world.bodies.count
+        return columns[found.body_a] * count + columns[found.body_b], found.point, world
+
+    def _renew(self, motion, free, scales, closing, duration):
+        """
+        Find the contacts of a `Motion` and return it with overlaps pushed out.
+
+        They are looked for where the bodies would be after the step without contact: features
+        that would overlap then are the ones that meet, which at the start are often others.
+        """
+        island = self._island
+        vector = None
+        if self.contacts is not None:
+            self._sources = [self.impulses()]
+            vector = self.contacts.vector
+        self._room = MARGIN * scales.length + KEPT_STEPS * closing
+        ahead = free.kicked(motion, duration)
+        ahead = ahead.moved(slice(None), duration * ahead.linear, duration * ahead.angular)
+        found = island.find_contacts(ahead, self._room)
+        self.contacts = contacts = PileContacts(island.bodies, found, ahead, vector)
+        # the gaps now, as far as they change at the rates there
+        contacts.gap = contacts.gap - duration * contacts.motion(
+            contacts.rows.motion(contacts.scaled(ahead)))[0]
+        self._turned = 0.0
+        self._forces = contacts.row_forces(self._remembered(found, MATCH * scales.length))
+        allowed = OVERLAP * scales.length
+        if (contacts.gap < -2 * allowed).any():
+            motion = self._pushed_out(motion, allowed)
+        return motion
+
+    def _remembered(self, found, reach):
+        """Return impulses (3, k) in contact axes to start from."""
+        columns, count = self._island.columns, self._island.world.bodies.count
+        keys = columns[found.body_a] * count + columns[found.body_b]
+        world = np.zeros((3, found.count))
+        for source in self._sources:
+            if len(source[0]):
+                world += Impulses(*source).at(keys, found.point, reach)
+        axes = self.contacts.axes
+        return axes[:, 0] * world[0] + axes[:, 1] * world[1] + axes[:, 2] * world[2]
+
+    def _pushed_out(self, motion, allowed):
+        """Return the motion with overlaps of more than `allowed` [m] undone, nearly."""
+        contacts = self.contacts
+        rows = np.zeros((3, len(contacts.gap)))
+        rows[0] = contacts.gap + allowed
+        force, _, _ = accelerated(
+            contacts.rows.response, contacts.step, contacts.without_friction(),
+            contacts.row_motion(rows, _NEVER), np.zeros(3 * contacts.rows.count), 0.1 * allowed,
+            ITERATIONS)
+        contacts.gap = contacts.gap + contacts.motion(contacts.rows.response(force))[0]
+        moved = contacts.velocities(contacts.rows.momentum(force))
+        return motion.moved(np.arange(self._island.member_count), *moved)
+
+    def _step(self, motion, free, scales, start, duration):
+        """Return (motion, closed contacts) after a step of `duration` [s]."""
+        island, contacts = self._island, self.contacts
+        rows = contacts.rows
+        kicked = free.kicked(motion, duration)
+        speed = contacts.motion(rows.motion(contacts.scaled(motion)))[0]
+        limit = scales.impact_speed(duration)
+        rebounds = (speed < -limit) & (contacts.gap + duration * speed < 0)
+        bias = np.zeros((3, len(speed)))
+        bias[0] = np.where(rebounds, contacts.restitution * speed,
+                           np.maximum(contacts.gap, 0.0) / duration)
+        velocity = contacts.scaled(kicked)
+        free_motion = rows.motion(velocity)
+        self._forces, used, _ = accelerated(
+            rows.response, contacts.step, contacts.cones,
+            free_motion + contacts.row_motion(bias, _NEVER), self._forces,
+            ACCURACY * scales.acceleration * duration, ITERATIONS)
+        island.world.work.solver_iterations += used
+        velocity += rows.momentum(self._forces)
+        contacts.gap = contacts.gap + duration * contacts.motion(rows.motion(velocity))[0]
+        motion = self._drifted(motion, kicked, velocity, free, duration)
+        force = contacts.forces(self._forces)
+        closed = force[0] > _PRESSED
+        if rebounds.any():
+            self._note(rebounds & closed, force, -speed, start + duration)
+        return motion, contacts.contacts.select(closed)
+
+    def _drifted(self, motion, kicked, scaled, free, duration):
+        """Return the motion after a step at the velocities that are given scaled."""
+        count = self._island.member_count
+        linear, angular = kicked.linear.copy(), kicked.angular.copy()
+        linear[:, :count], angular[:, :count] = self.contacts.velocities(scaled)
+        struck = Motion(motion.position, motion.orientation, linear, angular)
+        turn = rotation.from_rotation_vector(duration * angular)
+        orientation = rotation.normalize(rotation.multiply(turn, motion.orientation))
+        self._turned += duration * float(np.abs(angular).max(initial=0.0))
+        return Motion(motion.position + duration * linear, orientation, linear,
+                      free.carried(motion, kicked, struck, orientation, duration))
+
+    def _note(self, which, force, speed, time):
+        """Note rebounds (k,) bool as impacts, at the end of the step they are in."""
+        found, axes = self.contacts.contacts, self.contacts.axes
+        columns, world = self._island.columns, self._island.world
+        for row in np.flatnonzero(which):
+            impulse = axes[:, :, row].T @ force[:, row]
+            world.events.append(time, columns[found.body_a[row]], columns[found.body_b[row]],
+                                IMPACT, found.point[:, row], found.normal[:, row], impulse,
+                                speed[row])
+        world.work.impacts += bool(which.any())

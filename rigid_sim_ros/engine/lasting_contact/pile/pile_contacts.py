@@ -1,0 +1,198 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The contacts of a pile, kept for a few steps: their Jacobian, gaps that are followed."""
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
+from rigid_sim_ros.engine.solvers.accelerated import Cones, largest_eigenvalue
+from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, POINTS
+from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
+
+DENSE = 500
+"""Contact points times bodies up to which a dense response is quicker than blocks."""
+
+_MARGIN = 1.15
+"""What the estimate of the largest eigenvalue is raised by, to be a bound."""
+
+_ROUNDS = 3
+"""Of the power method, from the vector of the contacts before."""
+
+
+class DenseRows:
+    """
+    The rows of few contacts; as `BlockRows`, and with the response as a matrix.
+
+    Parameters
+    ----------
+    rows : (3k, 6 slots)
+
+    """
+
+    def __init__(self, rows):
+        """See the class."""
+        self._rows = rows
+        self._response = rows @ rows.T
+        self.count = len(rows) // 3
+
+    def motion(self, velocity):
+        """Return the motion (3k,) of all rows for scaled velocities, flat (6 slots,)."""
+        return self._rows @ velocity
+
+    def momentum(self, force):
+        """Return the scaled velocities, flat (6 slots,), that forces (3k,) make."""
+        return force @ self._rows
+
+    def response(self, force):
+        """Return the motion (3k,) that forces (3k,) make."""
+        return self._response @ force
+
+
+class PileContacts:
+    """
+    Contacts of an island with their Jacobian, at the poses of one instant.
+
+    Vectors by row are flat, (3n,): all normals, all first, all second tangents, in units that make
+    all rows of the same size. Of the n points some may be there only to fill up a block.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        The island's own.
+    contacts : Contacts
+        Points of a pair next to each other, at most eight.
+    motion : Motion
+    vector : (6 slots,) or None
+        Scaled velocities close to the fastest way to move the contacts, from those before.
+
+    """
+
+    def __init__(self, bodies, contacts, motion, vector):
+        """See the class."""
+        self.contacts = contacts
+        a, b = contacts.body_a, contacts.body_b
+        self._members = members = bodies.moving_count
+        self._frames = rotation.matrix(motion.orientation)
+        self.axes = np.stack((contacts.normal, *tangents(contacts.normal)))
+        scale = mass_scale(bodies, np.arange(bodies.count))
+        self._scale = scale[:, :members]
+        rows = np.stack([
+            scaled_rows(self.axes, contacts.point - motion.position[:, body],
+                        self._frames[:, :, body], sign * scale[:, body])
+            for body, sign in ((a, -1.0), (b, 1.0))], axis=2)
+        # rows of equal size: half the error of the solver
+        size = np.sqrt((rows * rows).sum(axis=(2, 3)))
+        np.maximum(size[1], size[2], out=size[1])
+        size[2] = size[1]
+        self._units = size.min(initial=np.inf) / size
+        rows *= self._units[:, :, None, None]
+        self.gap = contacts.separation.copy()
+        self.restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
+        slots = np.minimum(np.stack((a, b)), members)
+        self._places = np.arange(len(a))
+        self.rows = (self._dense(rows, slots) if len(a) * (members + 1) <= DENSE
+                     else self._blocks(rows, slots, a * bodies.count + b))
+        self._friction = np.zeros(self.rows.count)
+        self._friction[self._places] = (
+            mixed_friction(bodies.friction[a], bodies.friction[b])
+            * self._units[0] / self._units[1])
+        self.cones = Cones(self._friction)
+        self.vector, self.step = self._bound(vector)
+
+    def without_friction(self):
+        """Return `Cones` of the same contacts without friction."""
+        return Cones(np.zeros_like(self._friction))
+
+    def _dense(self, rows, slots):
+        """Return the rows as a matrix."""
+        count = len(self.gap)
+        dense = np.zeros((3, count, self._members + 1, 6))
+        index = np.arange(count)
+        for side in range(2):
+            dense[:, index, slots[side]] = rows[:, :, side]
+        # what does not move has no columns that count
+        dense[:, :, -1] = 0.0
+        return DenseRows(dense.reshape(3 * count, 6 * (self._members + 1)))
+
+    def _blocks(self, rows, slots, keys):
+        """Return the rows as blocks, and note which flat point each contact is."""
+        starts = np.flatnonzero(np.diff(keys, prepend=-1))
+        sizes = np.diff(starts, append=len(keys))
+        blocks, begin, low = [], 0, 0
+        for room in POINTS:
+            fits = np.flatnonzero((sizes > low) & (sizes <= room))
+            low = room
+            if not len(fits):
+                continue
+            places = np.arange(room)
+            real = places < sizes[fits, None]
+            contacts = np.where(real, starts[fits, None] + places, 0)
+            taken = (rows[:, contacts] * real[..., None, None]).transpose(1, 0, 2, 3, 4)
+            blocks.append(Block(slots[:, starts[fits]].T,
+                                taken.reshape(len(fits), 3 * room, 12), begin))
+            self._places[contacts[real]] = begin + np.flatnonzero(real.ravel())
+            begin += real.size
+        return BlockRows(blocks, self._members + 1)
+
+    def _bound(self, vector):
+        """Return the scaled velocities of the fastest motion, and a step for the solver."""
+        rounds = _ROUNDS
+        if vector is None or not vector.any():
+            vector = np.random.default_rng(0).normal(size=6 * (self._members + 1))
+            rounds += 7
+        largest, vector = largest_eigenvalue(
+            lambda velocity: self.rows.momentum(self.rows.motion(velocity)), vector, rounds)
+        return vector, 1 / (_MARGIN * largest) if largest > 0 else 1.0
+
+    # -- vectors by row --------------------------------------------------------------------------
+
+    def row_motion(self, values, missing=0.0):
+        """Return motions (3, k) by axis and contact as a vector by row."""
+        return self._flat(values * self._units, missing)
+
+    def row_forces(self, values):
+        """Return forces (3, k) by axis and contact as a vector by row."""
+        return self._flat(values / self._units, 0.0)
+
+    def motion(self, vector):
+        """Return motions (3, k) by axis and contact of a vector by row."""
+        return vector.reshape(3, -1)[:, self._places] / self._units
+
+    def forces(self, vector):
+        """Return forces (3, k) by axis and contact of a vector by row."""
+        return vector.reshape(3, -1)[:, self._places] * self._units
+
+    def _flat(self, values, missing):
+        result = np.full((3, self.rows.count), missing)
+        result[:, self._places] = values
+        return result.ravel()
+
+    # -- velocities and scaled ones --------------------------------------------------------------
+
+    def scaled(self, motion):
+        """Return the scaled velocities, flat (6 slots,), of a `Motion`."""
+        members = self._members
+        rates = rotation.transform_transposed(
+            self._frames[:, :, :members], motion.angular[:, :members])
+        result = np.zeros((members + 1, 6))
+        result[:-1] = (np.concatenate((motion.linear[:, :members], rates)) / self._scale).T
+        return result.ravel()
+
+    def velocities(self, scaled):
+        """Return linear and angular velocities (3, m) of scaled ones."""
+        unscaled = scaled.reshape(-1, 6)[:-1].T * self._scale
+        return unscaled[:3], rotation.transform(
+            self._frames[:, :, :self._members], unscaled[3:])

@@ -1,0 +1,178 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Piles: towers stand, heaps come to rest, and nothing is made of nothing."""
+
+from island_run import body, GRAVITY, ground, IslandRun
+
+import numpy as np
+
+import pytest
+
+from rigid_sim_ros.engine import diagnostics
+from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
+from rigid_sim_ros.engine.model import Material
+from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
+from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows
+
+
+def tower(count, edge=0.2, offset=0.0, **values):
+    """Return a tower of cubes, each shifted at random by at most `offset` [m]."""
+    random = np.random.default_rng(1)
+    return IslandRun([
+        body(f'cube_{level}', Cube(edge), position=(*(offset * random.uniform(-1, 1, 2)),
+                                                    edge * (level + 0.5)))
+        for level in range(count)], friction=0.5, **values)
+
+
+def heap(seed, **values):
+    """Return eight tumbled cubes in two layers just above the ground."""
+    random = np.random.default_rng(seed)
+    bodies = []
+    for x in (0, 1):
+        for y in (0, 1):
+            for z in (0, 1):
+                turn = random.normal(size=4)
+                bodies.append(body(f'c{x}{y}{z}', Cube(0.2),
+                                   position=(0.36 * x, 0.36 * y, 0.2 + 0.36 * z),
+                                   orientation=tuple(turn / np.linalg.norm(turn))))
+    return IslandRun(bodies, **values)
+
+
+def test_aligned_tower_stands_still():
+    """Ten cubes: nothing moves by more than the overlap that is allowed, and all rest."""
+    run = tower(10)
+    start = run.state.position.copy()
+    assert run.run_to_rest(1.0) is not None
+    assert np.abs(run.state.position - start).max() < 1e-4
+
+
+def test_offset_tower_stands():
+    """Shifted by up to a tenth of an edge: it stands, and hardly creeps."""
+    run = tower(6, offset=0.02)
+    start = run.state.position.copy()
+    assert run.run_to_rest(1.0) is not None
+    assert np.abs(run.state.position - start).max() < 2e-4
+
+
+@pytest.mark.parametrize('restitution', [0.0, 0.5])
+def test_heap_comes_to_rest(restitution):
+    """Energy only falls, but for what pushing out overlaps costs; little overlaps at the end."""
+    run = heap(1, restitution=restitution, friction=0.5)
+    energy, rise = run.energy(), 0.0
+    while run.time < 6:
+        resting = run.step().resting
+        energy, before = run.energy(), energy
+        rise = max(rise, energy - before)
+        if resting:
+            break
+    assert resting
+    assert rise < 1e-2 * GRAVITY * 0.2
+    assert diagnostics.penetration(run.world.bodies, run.state) < 2e-3 * 0.2
+
+
+def test_contact_forces_keep_momenta():
+    """Eight cubes thrown together in free space: momentum to rounding, spin to first order."""
+    random = np.random.default_rng(3)
+    run = heap(2, restitution=0.3, friction=0.4, gravity=(0.0, 0.0, 0.0), planes=[])
+    state = run.state
+    towards = np.array((0.18, 0.18, 0.38))[:, None] - state.position
+    state.linear_velocity = 3 * towards
+    state.angular_velocity = random.normal(size=towards.shape)
+    before = (diagnostics.momentum(run.world.bodies, state),
+              diagnostics.angular_momentum(run.world.bodies, state))
+    run.run(0.3)
+    np.testing.assert_allclose(diagnostics.momentum(run.world.bodies, state), before[0],
+                               atol=1e-12)
+    np.testing.assert_allclose(diagnostics.angular_momentum(run.world.bodies, state), before[1],
+                               atol=5e-3)
+
+
+def test_sliding_row_loses_what_friction_takes():
+    """Four touching cubes slide as one: v^2 / (2 mu g), to first order in the step."""
+    run = IslandRun([body(f'c{i}', Cube(0.2), position=(0.2 * i, 0, 0.1), velocity=(2, 0, 0))
+                     for i in range(4)], friction=0.4)
+    start = run.state.position.copy()
+    run.run(0.6)
+    way = (run.state.position - start)[0, :4]
+    np.testing.assert_allclose(way, 4 / (2 * 0.4 * GRAVITY), rtol=1e-2)
+    assert np.ptp(way) < 1e-3
+    assert np.abs(run.state.position[2, :4] - 0.1).max() < 1e-4
+
+
+def test_many_balls_roll_on_a_pushed_plate():
+    """A plate on smooth ground is pushed: balls on it roll at 2/7 of its acceleration."""
+    rough = Material(0.0, 1.0)
+    balls = [body(f'b{x}{y}', Sphere(0.1), 1.0, position=(0.3 * x, 0.3 * y, 0.3), material=rough)
+             for x in range(3) for y in range(3)]
+    plate = body('plate', Box((3.0, 3.0, 0.2)), 10.0, position=(0.3, 0.3, 0.1),
+                 force=(30.0, 0.0, 0.0), material=rough)
+    run = IslandRun([*balls, plate], [ground(material=Material(0.0, 0.0))])
+    run.run(0.5)
+    # m a = F on a ball, and F r = 2/5 m r^2 (A - a) / r; M A = 30 - 9 F on the plate
+    acceleration = 30 / (10 + 9 * 2 / 7)
+    np.testing.assert_allclose(run.state.linear_velocity[0, 9], 0.5 * acceleration, rtol=1e-6)
+    np.testing.assert_allclose(run.state.linear_velocity[0, :9], 0.5 * acceleration * 2 / 7,
+                               rtol=1e-6)
+
+
+def test_blocks_multiply_as_a_matrix_does():
+    """Products by blocks against the dense Jacobian, for pairs of different sizes."""
+    random = np.random.default_rng(0)
+    slots = 4
+    blocks, dense = [], []
+    start = 0
+    for room, pairs in ((1, 2), (4, 3)):
+        bodies = np.array([random.permutation(slots)[:2] for _ in range(pairs)])
+        rows = random.normal(size=(pairs, 3 * room, 12))
+        blocks.append(Block(bodies, rows, start))
+        full = np.zeros((3, pairs * room, 6 * slots))
+        for pair, (a, b) in enumerate(bodies):
+            part = rows[pair].reshape(3, room, 12)
+            full[:, pair * room:(pair + 1) * room, 6 * a:6 * a + 6] = part[..., :6]
+            full[:, pair * room:(pair + 1) * room, 6 * b:6 * b + 6] = part[..., 6:]
+        dense.append(full)
+        start += pairs * room
+    matrix = np.concatenate(dense, axis=1).reshape(-1, 6 * slots)
+    product = BlockRows(blocks, slots)
+    velocity, force = random.normal(size=6 * slots), random.normal(size=len(matrix))
+    np.testing.assert_allclose(product.motion(velocity), matrix @ velocity, atol=1e-12)
+    np.testing.assert_allclose(product.momentum(force), matrix.T @ force, atol=1e-12)
+    np.testing.assert_allclose(product.response(force), matrix @ (matrix.T @ force), atol=1e-11)
+
+
+def test_impulses_are_found_again():
+    """By pair and place: what moved a little is known, what is far or of another pair is not."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (5, 5, 5.0)]).T
+    old = Impulses(np.array((7, 7, 3)), points, np.diag((1.0, 2.0, 3.0)))
+    found = old.at(np.array((7, 3, 3, 9)),
+                   np.array([(0.95, 0, 0), (5, 5, 5.05), (0, 0, 0), (0, 0, 0)]).T, 0.1)
+    np.testing.assert_array_equal(found, np.array([(0, 2, 0), (0, 0, 3), (0,) * 3, (0,) * 3]).T)
+
+
+def test_quiet_bodies_are_timed():
+    """A tremor does not count, a move does; what is known outlives the island."""
+    def at(x):
+        return Motion(np.array([(0.0, x)] * 3), np.array([(0.0, 0)] * 3 + [(1.0, 1)]),
+                      np.zeros((3, 2)), np.zeros((3, 2)))
+
+    radius = np.ones(2)
+    quiet = Quiet(np.array((4, 6)))
+    assert quiet.shortest(1.0, at(0.0), radius, 0.01) == 0.0
+    assert quiet.shortest(2.0, at(0.001), radius, 0.01) == 1.0
+    younger = Quiet(np.array((6, 4)))
+    younger.take_over(quiet)
+    assert younger.shortest(3.0, at(0.0), radius, 0.01) == 2.0
+    assert younger.shortest(4.0, at(0.5), radius, 0.01) == 0.0
