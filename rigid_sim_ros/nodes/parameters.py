@@ -90,7 +90,7 @@ PARAMETERS = (
     Row('scene', 'ten_cubes', 'path of a scene file, or name of a shipped scene',
         read_only=True),
     Row('method', 'exact', 'how motion is computed', choices=tuple(METHODS), read_only=True),
-    Row('max_step', 1 / 240, 'longest step of lasting contact, or of everything in methods that '
+    Row('max_step', 0.01, 'longest step of lasting contact, or of everything in methods that '
         'step', 's', 1e-6, 1.0, read_only=True),
     Row('publish_rate', 100.0, 'states published per second of simulated time', 'Hz', 0.1, 1e4),
     Row('real_time_factor', 1.0, 'simulated seconds per second; 0 is as fast as possible', '',
