@@ -28,6 +28,9 @@ SOFTNESS = 2
 IMPEDANCE = (0.99, 0.99, 0.001, 0.5, 2.0)
 """Nearly rigid at any depth: a tenth of the default's sag, and a rebound true to the spring."""
 
+MANY, MEMORY = 2000, 1 << 30
+"""With more bodies, a gigabyte [bytes]: MuJoCo's own estimate grows to a hundred of them."""
+
 TYPES = {'box': mujoco.mjtGeom.mjGEOM_BOX, 'sphere': mujoco.mjtGeom.mjGEOM_SPHERE}
 
 
@@ -62,6 +65,8 @@ class Mujoco(Engine):
     def build(self, scene, step, sleeping):
         """Make the model through `MjSpec` and compile it."""
         spec = mujoco.MjSpec()
+        if len(scene.bodies) > MANY:
+            spec.memory = MEMORY
         self._set_options(spec.option, scene, step, sleeping)
         for plane in scene.planes:
             geom = spec.worldbody.add_geom(name=plane.name, size=(0, 0, 1),
@@ -80,7 +85,8 @@ class Mujoco(Engine):
         self.data = mujoco.MjData(self.model)
         self.step = step
         self.count = len(moving)
-        numbers = [self.model.body(body.name).id for body in moving]
+        numbers = [mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, body.name)
+                   for body in moving]
         for number, body in zip(numbers, moving):
             self.data.xfrc_applied[number] = (*body.force, *body.torque)
         self.numbers = numbers
