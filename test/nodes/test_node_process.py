@@ -26,6 +26,7 @@ from node_harness import Client, NodeProcess  # noqa: E402, I100
 from rigid_sim_ros.nodes.parameters import PARAMETERS  # noqa: E402
 from rigid_sim_ros.nodes.running import run  # noqa: E402
 from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
+from rigid_sim_ros.recording import Bag  # noqa: E402
 from rigid_sim_ros.topics import COMMANDS, PUBLISHED, SERVICES  # noqa: E402
 import yaml  # noqa: E402
 
@@ -43,6 +44,18 @@ def test_signals_end_it_in_order(tmp_path, signals):
         code, duration = process.stop(*signals, gap=random.uniform(0.0, 0.05))
         assert (code, duration < LONGEST_END) == (0, True), process.error
         assert 'Traceback' not in process.error
+
+
+def test_signal_breaks_off_what_takes_too_long(tmp_path):
+    # ten simulated seconds of ten cubes that meet and come to rest, in one advance
+    with NodeProcess(tmp_path, scene='ten_cubes', publish_rate=0.1, real_time_factor=0,
+                     record=True, record_path=tmp_path / 'bag') as process:
+        process.wait_for_text('try, in another terminal')
+        code, duration = process.stop(signal.SIGINT, signal.SIGINT, gap=0.2)
+        assert (code, duration < LONGEST_END) == (0, True), process.error
+        assert 'Traceback' not in process.error
+    assert [message.time_ns for message in Bag(tmp_path / 'bag').messages()
+            if message.topic.endswith('/poses')][0] == 0
 
 
 def test_signal_while_it_starts(tmp_path):
