@@ -55,3 +55,36 @@ def contact_groups(bodies, contacts):
     if (labels == labels[0]).all():
         return [contacts]
     return [contacts.select(labels == label) for label in np.unique(labels)]
+
+
+def connected(pairs, moving_count):
+    """
+    Return the places (l,) int of a list of pairs (a, b) in groups that share a body, ascending.
+
+    What has an index from `moving_count` on does not move and joins nothing. In plain Python, for
+    lists so short that arrays would take longer.
+    """
+    group_of, groups = {}, []
+    for place, pair in enumerate(pairs):
+        joined = None
+        for body in pair:
+            if body >= moving_count:
+                continue
+            group = group_of.get(body)
+            if group is None:
+                if joined is None:
+                    joined = ([], [])
+                    groups.append(joined)
+                group_of[body] = joined
+                joined[1].append(body)
+            elif joined is None:
+                joined = group
+            elif group is not joined:
+                joined[0].extend(group[0])
+                joined[1].extend(group[1])
+                group[0].clear()
+                for other in group[1]:
+                    group_of[other] = joined
+                groups.remove(group)
+        joined[0].append(place)
+    return [np.array(sorted(places)) for places, _ in groups]

@@ -12,97 +12,123 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Impacts within a step of lasting contact: which they are, when, and what they do."""
+"""
+Impacts within a step of lasting contact: which they are, when, and what they do.
+
+A step that ends with something deeper than rounding is cut where that arrives. When it does is
+first searched on the motion that was tried, features alone and contact forces held; then the step
+is taken so far and looked at, and again if forces that are not quite constant have moved it.
+"""
 
 import numpy as np
 
-from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.friction import mixed_restitution
 from rigid_sim_ros.engine.impacts import resolve_impact
 from rigid_sim_ros.engine.lasting_contact import scales as units
-from rigid_sim_ros.engine.lasting_contact.step import second_half, velocity_across
+from rigid_sim_ros.engine.lasting_contact.arrival import meeting_time
+from rigid_sim_ros.engine.lasting_contact.step import first_half, second_half
 
 _MAX_ROUNDS = 50
 _ROUNDING = 1e-13
-"""Of the length scale, for a gap, and of the step, for a time: where a search ends."""
+"""Of the step: an interval that is not divided any more."""
+
+_GAIN = 0.5
+"""
+An overlap that shrinks to no less than this part does not come from its time: it is one that the
+step would close softly, and did not quite as it is not straight.
+"""
+
+SHORTEST = 1e-9
+"""Part of a step that is not worth taking: bounds on velocities divide by it."""
 
 
-def fast(motion, contacts, speed):
-    """Return which contacts (k,) bool approach faster than `speed` [m/s]."""
-    return rotation.dot(velocity_across(contacts, motion), contacts.normal) < -speed
+def arriving(motion, near, gap, speed):
+    """Return the contacts (m,) int with gaps below `gap` [m] approaching faster than `speed`."""
+    closed = near.contacts.separation < gap
+    if not closed.any():
+        return np.zeros(0, dtype=int)
+    return np.flatnonzero(closed & (near.approach(motion) > speed))
 
 
-def impacts_in(motion, contacts, gap, speed):
-    """Return the contacts with gaps below `gap` [m] that approach faster than `speed` [m/s]."""
-    contacts = contacts.select(np.flatnonzero(contacts.separation < gap))
-    return contacts.select(fast(motion, contacts, speed)) if contacts.count else contacts
-
-
-def gap_function(island, hits, motion, step, speed):
+def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
     """
-    Return a function of a `Motion`: the gap [m] of what hits, of the pairs of `hits` (k).
+    Return (time [s], motion, contacts near it) of the first impact in a step.
 
-    It is the smallest of the contacts that approach faster than `speed` [m/s]: others of the same
-    pair may be closed all the time. `motion` is that after the step [s] in which they hit.
+    Parameters
+    ----------
+    island : Island
+    limits : step.Limits
+    overlap, margin : float [m]
+        Gap, positive or negative, that counts as none; up to which contacts are found.
+    trial : step.Trial
+        The step.
+    near, end_near : Near
+        The contacts at its start and at its end.
+    hits : (m,) int
+        Those at its end that overlap and approach.
+
     """
-    pairs = island.pairs_of(hits)
-    approach = -rotation.dot(velocity_across(hits, motion), hits.normal)
-    margin = 2 * step * float(approach.max())
-
-    def gap(motion):
-        island.world.work.narrow_phases += len(pairs.pairs_a)
-        contacts = pairs.find_contacts(motion.position, motion.orientation, margin)
-        return float(contacts.separation[fast(motion, contacts, speed)].min(initial=margin))
-
-    return gap
-
-
-def time_of_impact(trial, gap, step, length):
-    """
-    Return (time [s], motion) at which a gap closes within a step.
-
-    `trial(time)` returns the motion after that time, `gap(motion)` the gap, which is negative
-    after the whole step. The search is the Illinois method (Dowell and Jarratt 1971), which keeps
-    a bracket. If the gap is closed at the start, that is the time.
-    """
-    low, high = 0.0, step
-    motion = trial(low)
-    gap_low, gap_high = gap(motion), gap(trial(high))
-    if gap_low <= 0.0:
-        return low, motion
-    side = 0
+    speed = 0.5 * limits.impact_speed
+    low, high, latest, depth = 0.0, trial.step, None, np.inf
+    shortest = SHORTEST * trial.step
+    time = meeting_time(trial, end_near.contacts, hits.tolist())
     for _ in range(_MAX_ROUNDS):
-        time = (low * gap_high - high * gap_low) / (gap_high - gap_low)
-        motion = trial(time)
-        found = gap(motion)
-        if abs(found) <= _ROUNDING * length or high - low <= _ROUNDING * step:
-            break
-        if found > 0.0:
-            low, gap_low = time, found
-            gap_high *= 0.5 if side == 1 else 1.0
-            side = 1
+        if time is None or not low < time < high:
+            time = 0.5 * (low + high)
+        if time <= shortest:
+            return 0.0, trial.start, near
+        tried = first_half(trial.free, trial.start, near, time, limits)
+        motion = tried.end()
+        around = island.near(motion, margin)
+        hits = arriving(motion, around, -overlap, speed)
+        if hits.size:
+            before, depth = depth, -float(around.contacts.separation[hits].min())
+            high, latest = time, (motion, around)
+            if depth > _GAIN * before or high - low <= _ROUNDING * trial.step:
+                break
+            time = meeting_time(tried, around.contacts, hits.tolist())
+        elif arriving(motion, around, overlap, speed).size:
+            return time, motion, around
         else:
-            high, gap_high = time, found
-            gap_low *= 0.5 if side == -1 else 1.0
-            side = -1
-    return time, motion
+            low = time
+            if latest is not None and high - low <= _ROUNDING * trial.step:
+                break
+            time = _extrapolated(time, motion, around, speed)
+    return (high, *latest) if latest is not None else (time, motion, around)
 
 
-def resolve(island, motion, contacts, scales, limits, time, rebounds):
+def _extrapolated(time, motion, near, speed):
+    """Return when [s] the first contact closes that approaches fast, at that speed, or None."""
+    approach = near.approach(motion)
+    fast = approach > speed
+    if not fast.any():
+        return None
+    return time + float((near.contacts.separation[fast] / approach[fast]).min())
+
+
+def resolve(motion, near, scales, limits, time, rebounds):
     """
     Return the motion after the impact of all contacts that are closed, and note its events.
 
     What was touching before is first given the forces it has missed since the last half step, so
     that it does not yield before it is hit. Without `rebounds` all restitution is zero.
     """
-    world, bodies = island.world, island.bodies
-    contacts = contacts.select(
-        np.flatnonzero(contacts.separation < units.IMPACT_GAP * scales.length))
-    if not contacts.count:
+    closed = near.closed(units.IMPACT_GAP * scales.length)
+    if not closed.size:
         return motion
-    slow = contacts.select(~fast(motion, contacts, 0.5 * limits.impact_speed))
-    motion = second_half(island, motion, slow)
+    fast = near.approach(motion) > 0.5 * limits.impact_speed
+    motion = second_half(motion, near, closed[~fast[closed]])
+    for group in near.groups(closed):
+        if fast[group].any():
+            motion = _struck(motion, near, group, scales, limits, time, rebounds)
+    return motion
+
+
+def _struck(motion, near, group, scales, limits, time, rebounds):
+    """Return the motion after the impact of contacts (l,) int that act on each other."""
+    island, contacts = near.island, near.contacts.select(group)
+    world, bodies = island.world, island.bodies
     restitution = mixed_restitution(
         bodies.restitution[contacts.body_a], bodies.restitution[contacts.body_b]).max()
     threshold = np.inf

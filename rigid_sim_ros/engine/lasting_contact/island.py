@@ -26,6 +26,7 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
+from rigid_sim_ros.engine.lasting_contact.near import memory_of, Near
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
 
@@ -58,8 +59,10 @@ class Island:
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
-        self.end = None
-        """The `Motion` at the end of the last step and the contacts near it."""
+        self.impulses = memory_of(older)
+        """`Impulses` of the last step's halves, by name."""
+        self._near = None
+        """The margin [m] and the `Near` that were found last."""
         self.pile = None
         """What many members keep from step to step."""
         self.older_piles = [island.pile for island in older if island.pile is not None]
@@ -67,6 +70,11 @@ class Island:
     def covers(self, pairs_a, pairs_b):
         """Return whether all these pairs (p,), as for the constructor, are looked after."""
         return bool(np.isin(pairs_a * self.world.bodies.count + pairs_b, self._keys).all())
+
+    def others(self, moving_count):
+        """Return which of the scene's first `moving_count` bodies it takes for fixed, (k,) int."""
+        others = self.columns[self.member_count:]
+        return others[others < moving_count]
 
     @property
     def member_count(self):
@@ -122,10 +130,12 @@ class Island:
         self.world.work.narrow_phases += len(self.pairs.pairs_a)
         return self.pairs.find_contacts(motion.position, motion.orientation, margin)
 
-    def pairs_of(self, contacts):
-        """Return the `PairGroups` of the pairs (own columns) that these contacts are of."""
-        pairs = np.unique(np.stack((contacts.body_a, contacts.body_b)), axis=1)
-        return PairGroups(self.bodies, *pairs)
+    def near(self, motion, margin):
+        """Return the contacts `Near` a `Motion`, with gaps below a margin [m]."""
+        last = self._near
+        if last is None or last[0] < margin or not last[1].is_at(motion):
+            last = self._near = margin, Near(self, motion, self.find_contacts(motion, margin))
+        return last[1]
 
 
 def _own_bodies(bodies, columns, member_count):

@@ -24,7 +24,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact import scales as units
-from rigid_sim_ros.engine.lasting_contact.step import second_half
+from rigid_sim_ros.engine.lasting_contact.step import second_half, STATIC
 from rigid_sim_ros.engine.solvers import contact_rows, ContactProblem
 from rigid_sim_ros.engine.solvers.linear import solve_guessed
 
@@ -63,11 +63,13 @@ def stands(island, free, scales, motion, contacts):
     return _held(island, scales, left)
 
 
-def at_rest(island, free, scales, motion, contacts):
-    """Return whether the island rests in this `Motion` on these touching contacts."""
-    if not contacts.count or not slow(island, scales, motion):
+def at_rest(free, scales, motion, near, touching):
+    """Return whether an island rests in a `Motion` on contacts (m,) int of those `Near` it."""
+    island = near.island
+    if not touching.size or not slow(island, scales, motion):
         return False
-    return _held(island, scales, second_half(island, free.kicked(motion.stopped(), 1.0), contacts))
+    return _held(island, scales, second_half(
+        free.kicked(motion.stopped(), 1.0), near, touching, STATIC))
 
 
 def _held(island, scales, left):

@@ -32,13 +32,15 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
-from rigid_sim_ros.engine.friction import mixed_friction
+from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
 from rigid_sim_ros.engine.narrow_phase import gap_acceleration_bias
-from rigid_sim_ros.engine.solvers import contact_rows, ContactProblem, solve
+from rigid_sim_ros.engine.solvers import ContactProblem, solve
 
+FIRST, SECOND, STATIC = range(3)
+"""What impulses are for: the halves of a step, and whether it could be the last."""
 
-_ACCURACY = 1e-11
-"""Of the change of velocities in a step, to which it is solved: far less than the step's error."""
+_NO_TURN = 1e-15
+"""Angle [rad] in a step below which turning adds less than rounding."""
 
 
 class Limits(NamedTuple):
@@ -67,72 +69,77 @@ class Limits(NamedTuple):
         return self.arrival_gap + step * self.impact_speed
 
 
-def velocity_across(contacts, motion):
-    """Return the velocity [m/s] of b minus that of a at contact points, (3, k), world axes."""
-    velocity = [motion.linear[:, body] + rotation.cross(
-        motion.angular[:, body], contacts.point - motion.position[:, body])
-        for body in (contacts.body_a, contacts.body_b)]
-    return velocity[1] - velocity[0]
+class Trial(NamedTuple):
+    """A step that is tried: its first half is solved, what comes of it is not looked at yet."""
+
+    free: FreeMotion
+    start: Motion
+    kicked: Motion
+    """After half of the step's forces."""
+
+    struck: Motion
+    """After the contacts' impulses in addition; the bodies drift at these velocities."""
+
+    step: float
+    """[s]"""
+
+    def end(self):
+        """Return the motion at the end but for the impulses of the second half."""
+        return self.free.drifted(self.start, self.kicked, self.struck, self.step)
 
 
-def first_half(island, free, start, contacts, step, limits):
-    """
-    Return the motion at the end of a step [s] but for the impulses of its second half.
-
-    `start` is the `Motion` at the beginning and `contacts` are those near it.
-    """
+def first_half(free, start, near, step, limits):
+    """Return the `Trial` of a step [s] from a `Motion` with the contacts `Near` it."""
     kicked = free.kicked(start, 0.5 * step)
-    across = velocity_across(contacts, start)
+    if not near.count:
+        return Trial(free, start, kicked, kicked, step)
+    contacts = near.contacts
+    across = near.across(start)
     speed = rotation.dot(across, contacts.normal)
-    near = ((contacts.separation < limits.touch_gap)
-            | (contacts.separation + step * speed < limits.arrival_gap))
-    which = np.flatnonzero(near & (speed > -limits.impact_speed))
+    closed = contacts.separation < limits.touch_gap
+    soon = closed | (contacts.separation + step * speed < limits.arrival_gap)
+    which = np.flatnonzero(soon & (speed > -limits.impact_speed))
     if not which.size:
-        return free.drifted(start, kicked, kicked, step)
-    contacts, across = contacts.select(which), across[:, which]
-    rows = contact_rows(island.bodies, contacts, start.position, start.orientation)
-    gamma_n, gamma_t = gap_acceleration_bias(
-        contacts, island.bodies, start.position, start.linear, start.angular)
-    gap = np.maximum(contacts.separation, 0.0)
-    bias = rows.components(0.5 * step * (gamma_t + contacts.normal * gamma_n))
-    bias[:contacts.count] += gap / step
-    slip = _slip(rows, contacts, across, limits)
-    struck = _strike(island, kicked, contacts, rows, bias, slip)
-    return free.drifted(start, kicked, struck, step)
+        return Trial(free, start, kicked, kicked, step)
+    bias = _turning(near, start, step)
+    bias[0] += np.maximum(contacts.separation, 0.0) / step
+    slip = _slip(near.rows.components(across).reshape(3, -1), closed, limits.slide_speed)
+    return Trial(free, start, kicked, near.struck(kicked, which, FIRST, bias, slip), step)
 
 
-def second_half(island, motion, contacts):
-    """Return the motion with the impulses that end a step on its touching contacts (k)."""
-    if not contacts.count:
-        return motion
-    rows = contact_rows(island.bodies, contacts, motion.position, motion.orientation)
-    zeros = np.zeros(3 * contacts.count)
-    return _strike(island, motion, contacts, rows, zeros, zeros.reshape(3, -1)[:2])
+def second_half(motion, near, which, half=SECOND):
+    """Return the motion with the impulses that end a step on its touching contacts (m,) int."""
+    return near.struck(motion, which, half) if len(which) else motion
 
 
-def push_out(island, motion, contacts):
+def push_out(motion, near):
     """Return the motion with bodies moved so that no contact overlaps, without friction."""
-    rows = contact_rows(island.bodies, contacts, motion.position, motion.orientation)
-    zeros = np.zeros(contacts.count)
-    free = np.concatenate((contacts.separation, zeros, zeros))
-    problem = ContactProblem(rows.response(), free, zeros, zeros, np.zeros((2, contacts.count)))
+    rows, count = near.rows, near.count
+    zeros = np.zeros(count)
+    free = np.concatenate((near.contacts.separation, zeros, zeros))
+    problem = ContactProblem(rows.response(), free, zeros, zeros, np.zeros((2, count)))
     return motion.moved(rows.touched, *rows.change(solve(problem).force))
 
 
-def _slip(rows, contacts, across, limits):
-    """Return the directions (2, k) of contacts that slide too fast to turn round in a step."""
-    _, first, second = rows.components(across).reshape(3, -1)
+def _turning(near, motion, step):
+    """Return what the turning of bodies and normals adds in half a step, (3, k), contact axes."""
+    if step * float(np.abs(motion.angular).max()) < _NO_TURN:
+        return np.zeros((3, near.count))
+    gamma_n, gamma_t = gap_acceleration_bias(
+        near.contacts, near.island.bodies, motion.position, motion.linear, motion.angular)
+    gamma = gamma_t + near.contacts.normal * gamma_n
+    return near.rows.components(0.5 * step * gamma).reshape(3, -1)
+
+
+def _slip(across, closed, slide_speed):
+    """
+    Return the directions (2, k) of closed contacts that slide too fast to turn round in a step.
+
+    None if none does.
+    """
+    _, first, second = across
     speed = np.sqrt(first * first + second * second)
-    known = (speed > limits.slide_speed) & (contacts.separation < limits.touch_gap)
-    return np.stack((first, second)) * np.where(known, 1 / np.where(known, speed, 1.0), 0.0)
-
-
-def _strike(island, motion, contacts, rows, bias, slip):
-    """Return the motion after the impulses that keep velocities plus `bias` (3k,) apart."""
-    bodies = island.bodies
-    free = rows.motion(motion.linear, motion.angular) + bias
-    friction = mixed_friction(bodies.friction[contacts.body_a], bodies.friction[contacts.body_b])
-    solution = solve(ContactProblem(rows.response(), free, friction, np.zeros(contacts.count),
-                                    slip), accuracy=_ACCURACY)
-    island.world.work.solver_iterations += solution.iterations
-    return motion.struck(rows.touched, *rows.change(solution.force))
+    known = closed & (speed > slide_speed)
+    if not known.any():
+        return None
+    return across[1:] * np.where(known, 1 / np.where(known, speed, 1.0), 0.0)

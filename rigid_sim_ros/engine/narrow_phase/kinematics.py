@@ -69,6 +69,8 @@ def gap_acceleration_bias(contacts, bodies, position, linear_velocity, angular_v
         Across the normal, in world axes.
 
     """
+    if not (contacts.feature == ROUND).any():
+        return _bias_of_flat(contacts, position, linear_velocity, angular_velocity)
     normal = contacts.normal
     state = (bodies, position, linear_velocity, angular_velocity)
     a = _side(contacts, contacts.body_a, -0.5, *state)
@@ -82,6 +84,41 @@ def gap_acceleration_bias(contacts, bodies, position, linear_velocity, angular_v
     follow = _contact_point_velocity(contacts, a, b, slip, rate)
     drift = cross(b.spin, follow - b.velocity) - cross(a.spin, follow - a.velocity)
     return gamma_n, drift - normal * dot(normal, drift)
+
+
+def _bias_of_flat(contacts, position, linear_velocity, angular_velocity):
+    """Return `gap_acceleration_bias` where nothing is round, both sides in the same arrays."""
+    normal, feature, count = contacts.normal, contacts.feature, contacts.count
+    both = np.concatenate((contacts.body_a, contacts.body_b))
+    spin, velocity = angular_velocity.take(both, axis=1), linear_velocity.take(both, axis=1)
+    half = 0.5 * contacts.separation * normal
+    arm = (np.concatenate((contacts.point - half, contacts.point + half), axis=1)
+           - position.take(both, axis=1))
+    turning = cross(spin, arm)
+    centripetal = cross(spin, turning)
+    points = velocity + turning
+    slip = points[:, count:] - points[:, :count]
+    spin_a, spin_b = spin[:, :count], spin[:, count:]
+    with_a = feature == FACE_A
+    rate = cross(np.where(with_a, spin_a, spin_b), normal)
+    follow = np.where(with_a, points[:, count:], points[:, :count])
+    crossing = np.flatnonzero(feature == EDGES)
+    if len(crossing):
+        edge_a, edge_b = contacts.edge_a[:, crossing], contacts.edge_b[:, crossing]
+        rate[:, crossing] = product_rate(edge_a, edge_b, normal[:, crossing],
+                                         spin_a[:, crossing], spin_b[:, crossing])
+        follow[:, crossing] += _along(edge_a, edge_b, slip[:, crossing]) * edge_a
+    gamma_n = (dot(normal, centripetal[:, count:] - centripetal[:, :count]) + 2 * dot(rate, slip)
+               - contacts.separation * dot(rate, rate))
+    drifts = cross(spin, np.concatenate((follow, follow), axis=1) - velocity)
+    drift = drifts[:, count:] - drifts[:, :count]
+    return gamma_n, drift - normal * dot(normal, drift)
+
+
+def _along(edge_a, edge_b, slip):
+    """Return how fast [m/s], (k,), the crossing of two edges runs along that of a."""
+    cosine = dot(edge_a, edge_b)
+    return (dot(slip, edge_a) - cosine * dot(slip, edge_b)) / (1 - cosine * cosine)
 
 
 @dataclass
@@ -158,9 +195,7 @@ def _curved(contacts, bodies, a, b):
 def _contact_point_velocity(contacts, a, b, slip, rate):
     """Return the velocity [m/s], (3, k), of the contact point: of what defines where it is."""
     follow = np.where(contacts.feature == FACE_A, b.point_velocity(), a.point_velocity())
-    edge_a, edge_b = contacts.edge_a, contacts.edge_b
-    cosine = dot(edge_a, edge_b)
-    along = (dot(slip, edge_a) - cosine * dot(slip, edge_b)) / (1 - cosine * cosine)
-    follow += np.where(contacts.feature == EDGES, along, 0.0) * edge_a
+    along = _along(contacts.edge_a, contacts.edge_b, slip)
+    follow += np.where(contacts.feature == EDGES, along, 0.0) * contacts.edge_a
     follow = np.where(a.is_round, a.velocity + a.radius * rate, follow)
     return np.where(b.is_round, b.velocity - b.radius * rate, follow)

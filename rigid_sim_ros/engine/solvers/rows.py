@@ -27,8 +27,10 @@ import numpy as np
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import tangents
 
+_NEXT, _AFTER = np.array((1, 2, 0)), np.array((2, 0, 1))
 
-@dataclass(frozen=True)
+
+@dataclass
 class ContactRows:
     """The axes of k contacts and what they do to the m moving bodies they touch."""
 
@@ -38,14 +40,12 @@ class ContactRows:
     axes: np.ndarray
     """(3, 3, k): axes[c] are the k world unit vectors (3, k) of row c: normal, tangents."""
 
-    arm_a: np.ndarray
-    """(3, k) [m] from the centre of body a to the contact point."""
+    bodies: np.ndarray
+    """(2k,) int: the bodies a, then the bodies b."""
 
-    arm_b: np.ndarray
-    """(3, k) [m], likewise of b."""
+    arms: np.ndarray
+    """(3, 2k) [m] from the centres of these bodies to the contact points."""
 
-    body_a: np.ndarray
-    body_b: np.ndarray
     scaled: np.ndarray
     """(3k, 6m): the rows of J sqrt(M^-1); per body three linear columns, three in body axes."""
 
@@ -53,12 +53,16 @@ class ContactRows:
     """(6m,): sqrt(M^-1), inverse masses and principal inverse moments."""
 
     frames: np.ndarray
-    """(3, 3, m): rotation matrices of the touched bodies."""
+    """
+    (3, 3, m): rotation matrices of the touched bodies.
+
+    None where all moments of each are equal: then body axes may be any, and are those of the world.
+    """
 
     @property
     def count(self):
         """Count of contacts."""
-        return len(self.body_a)
+        return len(self.bodies) // 2
 
     def response(self):
         """Return the motion across the contacts per force, (3k, 3k)."""
@@ -71,10 +75,14 @@ class ContactRows:
         Velocities give the velocity of b minus that of a at the contact points. Accelerations
         give their linear part (without the centripetal one).
         """
-        a, b = self.body_a, self.body_b
-        across = (linear[:, b] + rotation.cross(angular[:, b], self.arm_b)
-                  - linear[:, a] - rotation.cross(angular[:, a], self.arm_a))
-        return self.components(across)
+        return self.components(self.across(linear, angular))
+
+    def across(self, linear, angular):
+        """Return `motion` in world axes, (3, k)."""
+        count = self.count
+        each = linear.take(self.bodies, axis=1) + rotation.cross(
+            angular.take(self.bodies, axis=1), self.arms)
+        return each[:, count:] - each[:, :count]
 
     def components(self, vectors):
         """Return world vectors (3, k) in contact axes, (3k,)."""
@@ -90,31 +98,42 @@ class ContactRows:
     def change(self, force):
         """Return the changes (3, m) of linear and angular motion of the touched bodies."""
         change = ((force @ self.scaled) * self.scale).reshape(-1, 2, 3)
-        return change[:, 0].T, rotation.transform(self.frames, change[:, 1].T)
+        angular = change[:, 1].T
+        return change[:, 0].T, (angular if self.frames is None
+                                else rotation.transform(self.frames, angular))
 
 
 def contact_rows(bodies, contacts, position, orientation):
     """Return `ContactRows` for contacts and the poses (3, n) and (4, n) of all bodies."""
-    a, b = contacts.body_a, contacts.body_b
-    moving = bodies.moving_count
-    touched = sorted({index for index in (*a.tolist(), *b.tolist()) if index < moving})
+    count, moving = contacts.count, bodies.moving_count
+    both = np.concatenate((contacts.body_a, contacts.body_b))
+    touched = sorted({index for index in both.tolist() if index < moving})
     slots = np.full(bodies.count, len(touched))
     slots[touched] = np.arange(len(touched))
+    slot = slots.take(both)
     touched = np.array(touched, dtype=int)
-    frames = rotation.matrix(orientation[:, touched])
     scale = mass_scale(bodies, touched)
-    axes = np.stack((contacts.normal, *tangents(contacts.normal)))
-    arms = contacts.point - position[:, a], contacts.point - position[:, b]
-    count = len(a)
+    axes = np.empty((3, 3, count))
+    axes[0] = contacts.normal
+    axes[1], axes[2] = tangents(contacts.normal)
+    arms = (np.concatenate((contacts.point, contacts.point), axis=1)
+            - position.take(both, axis=1))
+    directions = np.concatenate((-axes, axes), axis=2)
+    turns = (arms.take(_NEXT, axis=0) * directions.take(_AFTER, axis=1)
+             - arms.take(_AFTER, axis=0) * directions.take(_NEXT, axis=1))
+    frames = None
+    if (scale[3] != scale[4]).any() or (scale[4] != scale[5]).any():
+        frames = rotation.matrix(orientation.take(touched, axis=1))
+        # what is fixed gets the axes of whoever is last, to no effect
+        of_each = frames.take(np.minimum(slot, len(touched) - 1), axis=2)
+        turns = (of_each[:, None] * turns.transpose(1, 0, 2)[:, :, None]).sum(axis=0)
     # one column of bodies too many takes what acts on fixed ones
     rows = np.zeros((3, count, len(touched) + 1, 6))
-    for body, arm, sign in ((a, arms[0], -1.0), (b, arms[1], 1.0)):
-        which = np.flatnonzero(body < moving)
-        slot = slots[body[which]]
-        rows[:, which, slot] = scaled_rows(
-            axes[:, :, which], arm[:, which], frames[:, :, slot], sign * scale[:, slot])
+    size = np.concatenate((scale, np.zeros((6, 1))), axis=1).take(slot, axis=1)
+    each = np.concatenate((directions, turns), axis=1) * size
+    rows[:, np.arange(2 * count) % count, slot] = each.transpose(0, 2, 1)
     scaled = rows[:, :, :-1].reshape(3 * count, -1)
-    return ContactRows(touched, axes, *arms, a, b, scaled, scale.T.ravel(), frames)
+    return ContactRows(touched, axes, both, arms, scaled, scale.T.ravel(), frames)
 
 
 def mass_scale(bodies, indices):

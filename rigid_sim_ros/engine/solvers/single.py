@@ -45,6 +45,23 @@ def solve_one(response, free, friction, floor=0.0):
     return _closing_force(response, free, friction)
 
 
+def slide_one(response, free_n, friction, slip):
+    """
+    Return the force of a contact that slides along a known direction (2,), or None if it jams.
+
+    It jams if the friction that goes with a normal force presses harder than that force.
+    """
+    if free_n >= 0.0:
+        return 0.0, 0.0, 0.0
+    nn, n1, n2 = response[:3]
+    first, second = -friction * slip[0], -friction * slip[1]
+    yielding = nn + first * n1 + second * n2
+    if yielding <= 0.0:
+        return None
+    normal = -free_n / yielding
+    return normal, first * normal, second * normal
+
+
 def friction_under(response, free_1, free_2, limit):
     """
     Return the friction (first, second) of a contact whose largest friction is given.

@@ -1,0 +1,169 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The contacts near the poses of one instant, and what is worked out of them when it is needed."""
+
+from functools import cached_property
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.friction import mixed_friction
+from rigid_sim_ros.engine.graph import connected
+from rigid_sim_ros.engine.solvers import canonical, contact_rows, ContactProblem, solve
+
+
+class Near:
+    """
+    The contacts (k) near a pose of an island's bodies; velocities do not matter for it.
+
+    Both halves of a step ask it, the second of one step and the first of the next, and impacts
+    between them: its Jacobian is made once.
+
+    Parameters
+    ----------
+    island : Island
+    motion : Motion
+        Whose poses these are.
+    contacts : Contacts
+        In columns of the island.
+
+    """
+
+    def __init__(self, island, motion, contacts):
+        """See the class."""
+        self.island = island
+        self.contacts = contacts
+        self.position, self.orientation = motion.position, motion.orientation
+        self.body_pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist()))
+        """(k,): the bodies of each contact, as plain numbers."""
+        columns = island.columns
+        self.scene_pairs = list(zip(columns[contacts.body_a].tolist(),
+                                    columns[contacts.body_b].tolist()))
+        """(k,): the same, as they are numbered in the scene."""
+
+    @property
+    def count(self):
+        """Count of contacts."""
+        return len(self.body_pairs)
+
+    @cached_property
+    def rows(self):
+        """The `ContactRows`."""
+        return contact_rows(self.island.bodies, self.contacts, self.position, self.orientation)
+
+    @cached_property
+    def _response(self):
+        return self.rows.response()
+
+    @cached_property
+    def _friction(self):
+        friction = self.island.bodies.friction
+        return mixed_friction(friction[self.contacts.body_a], friction[self.contacts.body_b])
+
+    def is_at(self, motion):
+        """Return whether these are the poses of a `Motion`, to the last bit."""
+        return (np.array_equal(self.position, motion.position)
+                and np.array_equal(self.orientation, motion.orientation))
+
+    def across(self, motion):
+        """Return the velocity [m/s] of b minus that of a at the contacts, (3, k), world axes."""
+        return self.rows.across(motion.linear, motion.angular)
+
+    def approach(self, motion):
+        """Return how fast [m/s] contacts approach, (k,)."""
+        if not self.count:
+            return np.zeros(0)
+        return -rotation.dot(self.contacts.normal, self.across(motion))
+
+    def closed(self, gap):
+        """Return the contacts (m,) int with gaps below one [m]."""
+        return np.flatnonzero(self.contacts.separation < gap)
+
+    def groups(self, which):
+        """Return contacts (m,) int as a list of (l,) int, of which none acts on another."""
+        moving = self.island.bodies.moving_count
+        pairs = [self.body_pairs[contact] for contact in which]
+        return [which[group] for group in connected(pairs, moving)]
+
+    def struck(self, motion, which, half, bias=None, slip=None):
+        """
+        Return the motion after the impulses that keep contacts (m,) int from closing.
+
+        That is velocities across them, plus `bias` (3, k) in contact axes, of no approach, with
+        friction; `slip` (2, k) are directions known, see `ContactProblem`. `half` names what they
+        are for: the last impulses of the same name are what the solver starts from.
+        """
+        count = self.count
+        free = self.rows.components(self.across(motion)).reshape(3, count)
+        if bias is not None:
+            free += bias
+        guess = self._remembered(half)
+        impulse = np.zeros((3, count))
+        closing = free[0, which] < 0.0
+        rounding = -canonical.ACCURACY * float(np.abs(free[:, which]).max())
+        while closing.any():
+            for group in self.groups(which[closing]):
+                impulse[:, group] = self._solved(free, group, slip, guess)
+            # most contacts are not reached: who is left out has to open by itself
+            after = free[0] + self._response[:count] @ impulse.ravel()
+            overlooked = ~closing & (after[which] < rounding)
+            if not overlooked.any():
+                break
+            closing |= overlooked
+        self.island.impulses[half] = self.scene_pairs, self.rows.world(impulse.ravel())
+        return motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
+
+    def _remembered(self, half):
+        """Return the last impulses of that name in contact axes, (3, k), or None."""
+        last = self.island.impulses.get(half)
+        if last is None:
+            return None
+        pairs, world = last
+        if pairs != self.scene_pairs:
+            places = {}
+            for place, pair in enumerate(pairs):
+                places.setdefault(pair, []).append(place)
+            missing = world.shape[1]
+            order = [places[pair].pop(0) if places.get(pair) else missing
+                     for pair in self.scene_pairs]
+            world = np.concatenate((world, np.zeros((3, 1))), axis=1).take(order, axis=1)
+        return self.rows.components(world).reshape(3, -1)
+
+    def _solved(self, free, group, slip, guess):
+        """Return the impulses (3, l) of contacts that act on each other."""
+        count = self.count
+        rows = np.concatenate((group, group + count, group + 2 * count))
+        response = self._response
+        if len(group) < count:
+            response = response[rows[:, None], rows]
+        problem = ContactProblem(
+            response, free[:, group].ravel(), self._friction[group], np.zeros(len(group)),
+            np.zeros((2, len(group))) if slip is None else slip[:, group])
+        if guess is not None:
+            guess = guess[:, group].ravel()
+            guess = guess if guess.any() else None
+        solution = solve(problem, guess)
+        self.island.world.work.solver_iterations += solution.iterations
+        return solution.force.reshape(3, -1)
+
+
+def memory_of(islands):
+    """Return what islands have in their `impulses`, together."""
+    together = {}
+    for island in islands:
+        for half, (pairs, world) in island.impulses.items():
+            before = together.get(half, ([], np.zeros((3, 0))))
+            together[half] = before[0] + pairs, np.concatenate((before[1], world), axis=1)
+    return together

@@ -1,0 +1,97 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Islands of few bodies stepped through time, to second order: steps cut where something hits."""
+
+import numpy as np
+
+from rigid_sim_ros.engine.lasting_contact import cut, scales as units
+from rigid_sim_ros.engine.lasting_contact.rest import at_rest
+from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits, push_out, second_half
+
+_MOST_PARTS = 1000
+
+
+def advance_in_steps(island, state, start, duration):
+    """
+    Advance an `Island` by `duration` [s] from `start` [s]; return (closed contacts, resting).
+
+    The duration is one step, or equal parts if something is so fast that it could pass through
+    something thin. The members' columns of the `State` of the whole scene are replaced.
+    """
+    free = island.free_motion(state)
+    scales = island.scales(free)
+    motion = island.gather(state)
+    parts = _parts(island, free, motion, duration)
+    step = duration / parts
+    limits = Limits.of(scales, step)
+    near = island.near(motion, limits.margin(step))
+    for part in range(parts):
+        motion, near = _advance(island, free, scales, limits, motion, near, start + part * step,
+                                step)
+        island.world.work.contact_steps += 1
+    touching = near.closed(limits.touch_gap)
+    resting = at_rest(free, scales, motion, near, touching)
+    island.scatter(motion.stopped() if resting else motion, state)
+    return near.contacts.select(touching), resting
+
+
+def _advance(island, free, scales, limits, motion, near, time, step):
+    """Return (motion, contacts near it) after a step [s], cut where something hits."""
+    overlap = units.OVERLAP * scales.length
+    margin = limits.margin(step)
+    if cut.arriving(motion, near, overlap, limits.impact_speed).size:
+        motion = cut.resolve(motion, near, scales, limits, time, rebounds=True)
+    left = step
+    for number in range(2 * units.MAX_CUTS):
+        trial = first_half(free, motion, near, left, limits)
+        end = trial.end()
+        end_near = island.near(end, margin)
+        hits = cut.arriving(end, end_near, -units.IMPACT_GAP * scales.length,
+                            0.5 * limits.impact_speed)
+        if not hits.size:
+            break
+        part, motion, near = cut.first_impact(island, limits, overlap, margin, trial, near,
+                                              end_near, hits)
+        left -= part
+        motion = cut.resolve(motion, near, scales, limits, time + step - left,
+                             rebounds=number < units.MAX_CUTS)
+        if left <= cut.SHORTEST * step:
+            end, end_near = motion, near
+            break
+    end, end_near = _separated(island, end, end_near, overlap, margin)
+    closed = end_near.closed(limits.touch_gap)
+    if closed.size:
+        # what arrives fast just now is an impact, the first thing in the next step
+        closed = closed[end_near.approach(end)[closed] <= limits.impact_speed]
+    return second_half(end, end_near, closed), end_near
+
+
+def _separated(island, motion, near, overlap, margin):
+    """Return (motion, contacts near it) with overlaps pushed out, which is hardly ever needed."""
+    if not near.closed(-overlap).size:
+        return motion, near
+    motion = push_out(motion, near)
+    return motion, island.near(motion, margin)
+
+
+def _parts(island, free, motion, duration):
+    """Return how many parts a step needs so that nothing passes half of what is thinnest."""
+    extents = island.bodies.half_extents
+    # nothing passes through a plane unseen: it has no other side
+    thickness = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
+    reach = island.reach(free, motion, duration)
+    a, b = island.pairs.pairs_a, island.pairs.pairs_b
+    needed = (reach[a] + reach[b]) / np.minimum(thickness[a], thickness[b])
+    return int(min(max(1.0, np.ceil(needed.max(initial=0.0))), _MOST_PARTS))
