@@ -185,8 +185,8 @@ def test_medians_without_the_warm_up(monkeypatch):
 
 def test_short_runs_are_repeated_and_long_ones_end_with_the_budget(monkeypatch):
     short = Clock(monkeypatch, [0] * 100, [0.009] * 100)
-    plan = TimingPlan(repeats=3, least_time=0.2, budget=100.0)
-    assert measured_time(short, (None, 1.0, False, (1.0,)), plan).repeats == 20
+    plan = TimingPlan(repeats=3, least_time=0.045, budget=100.0)
+    assert measured_time(short, (None, 1.0, False, (1.0,)), plan).repeats == 5
     long = Clock(monkeypatch, [0] * 100, [40.0] * 100)
     assert measured_time(long, (None, 1.0, False, (1.0,)), plan).repeats == 2
 
