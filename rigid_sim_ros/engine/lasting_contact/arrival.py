@@ -34,15 +34,17 @@ def meeting_time(trial, contacts, rows):
     """
     Return the first time [s] at which one of some contacts closes, or None.
 
+    None means that these features do not tell: they overlap from the start on, or are round.
+
     Parameters
     ----------
     trial : step.Trial
+        The step.
     contacts : Contacts
         At its end; those asked for overlap.
     rows : (m,) int
         Which are asked for.
 
-    None means that these features do not tell: they overlap from the start on, or are round.
     """
     end = trial.end()
     first = inf

@@ -58,7 +58,9 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
     Parameters
     ----------
     island : Island
+        Whose step it is.
     limits : step.Limits
+        What counts as an impact, among others.
     overlap, margin : float [m]
         Gap, positive or negative, that counts as none; up to which contacts are found.
     trial : step.Trial

@@ -60,7 +60,7 @@ class Near:
 
     @cached_property
     def rows(self):
-        """The `ContactRows`."""
+        """Return the `ContactRows`."""
         return contact_rows(self.island.bodies, self.contacts, self.position, self.orientation)
 
     @cached_property

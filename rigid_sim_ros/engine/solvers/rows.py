@@ -56,7 +56,7 @@ class ContactRows:
     """
     (3, 3, m): rotation matrices of the touched bodies.
 
-    None where all moments of each are equal: then body axes may be any, and are those of the world.
+    None where all moments of each are equal: then body axes may be any, those of the world are.
     """
 
     @property
@@ -148,10 +148,14 @@ def scaled_rows(axes, arm, frames, scale):
 
     Parameters
     ----------
-    axes : (3, 3, k): axes[c] are the k unit vectors (3, k) of row c
-    arm : (3, k) [m] from the centre of the body to the point
-    frames : (3, 3, k) rotation matrices of the body
-    scale : (6, k) its `mass_scale`, negative for side a
+    axes : (3, 3, k)
+        axes[c] are the k unit vectors (3, k) of row c.
+    arm : (3, k) [m]
+        From the centre of the body to the point.
+    frames : (3, 3, k)
+        Rotation matrices of the body.
+    scale : (6, k)
+        Its `mass_scale`, negative for side a.
 
     """
     rows = np.empty((3, arm.shape[1], 6))
