@@ -21,6 +21,7 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.engine.friction import mixed_restitution
 from rigid_sim_ros.engine.graph import contact_groups
 from rigid_sim_ros.engine.impacts import resolve_impact
 from rigid_sim_ros.engine.narrow_phase import find_contacts
@@ -35,7 +36,12 @@ STICK_SPEED = 1e-3
 """
 Points that part slower than this, times the root of acceleration times size, stay in contact. The
 error it makes in a motion is of its second order (the bounces left out take as long as it says).
+The acceleration is the largest of any point: a spinning body comes back to what it has hit without
+gravity too, and bounces as often as one that falls.
 """
+
+ELASTIC_STICK_SPEED = 1e-5
+"""The same where nothing is lost in a rebound: bounces hardly get smaller, and energy is kept."""
 
 
 class Touch(NamedTuple):
@@ -57,13 +63,17 @@ class Touch(NamedTuple):
     """(m,) bool: which go on touching something."""
 
 
-def stick_speed(bodies, acceleration, contacts):
+def stick_speed(bodies, acceleration, angular, contacts):
     """Return the speed [m/s] below which contacts of these bodies do not part again."""
     involved = {*contacts.body_a.tolist(), *contacts.body_b.tolist()}
     involved = [index for index in involved if bodies.inverse_mass[index] > 0]
-    pull = acceleration[:, involved]
-    strongest = sqrt((pull * pull).sum(axis=0).max())
-    return STICK_SPEED * sqrt(strongest * bodies.bounding_radius[involved].max())
+    pull, rate = acceleration[:, involved], angular[:, involved]
+    radius = bodies.bounding_radius[involved]
+    strongest = (np.sqrt((pull * pull).sum(axis=0)) + (rate * rate).sum(axis=0) * radius).max()
+    restitution = mixed_restitution(bodies.restitution[contacts.body_a],
+                                    bodies.restitution[contacts.body_b])
+    stick = STICK_SPEED if restitution.min() < 1 else ELASTIC_STICK_SPEED
+    return stick * sqrt(strongest * radius.max())
 
 
 class Touches:
@@ -109,7 +119,8 @@ class Touches:
     def _apply(self, time, contacts, stays):
         """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
         world = self._world
-        threshold = stick_speed(world.bodies, self._flights.acceleration, contacts)
+        threshold = stick_speed(world.bodies, self._flights.acceleration, self._angular,
+                                contacts)
         impact = resolve_impact(world.bodies, contacts, self._position, self._orientation,
                                 self._linear, self._angular, world.impact_law, threshold)
         self._linear[:, impact.touched] += impact.linear

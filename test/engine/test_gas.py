@@ -22,6 +22,7 @@ import pytest
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
+from rigid_sim_ros.scene import load_scene
 
 ELASTIC = Material(restitution=1.0, friction=0.0)
 HALF_ROOM = 2.0
@@ -88,3 +89,18 @@ def test_gas_falls_to_rest_without_overlap():
         assert simulation.energy() < energy + 1e-6 * abs(energy)
         energy = simulation.energy()
     assert simulation.work.contact_steps > 50
+
+
+def test_a_spinning_body_held_against_another_does_not_rattle_for_ever():
+    """
+    Without gravity a turning body comes back to what it has hit, in ever smaller bounces.
+
+    One is pushed against its neighbour again and again: the bounces have to end as contact.
+    """
+    simulation = Simulation(load_scene('report_dynamics'))
+    for push in range(1, 160):
+        simulation.set_velocity('spinning', linear=(push * 1e-3, 0.0, 0.0), angular=(0, 0, 0))
+        simulation.advance(0.5 if push % 7 == 0 else 0.02)
+        assert simulation.work.impacts < 40 * push
+    assert simulation.work.contact_steps > 0
+    assert np.isfinite(simulation.position).all()
