@@ -324,7 +324,8 @@ def test_what_is_refused_is_one_line_and_exit_code_1(command, patient, line, err
 
 
 def test_message_that_nobody_takes_is_one_line_and_exit_code_1(command, monkeypatch):
-    monkeypatch.setattr(f'{GRAPH}.PATIENCE', 1.0)
+    # long enough to find the node on a busy machine
+    monkeypatch.setattr(f'{GRAPH}.PATIENCE', 4.0)
     code, out, error = command('topic pub --once /rigid_sim/states '
                                'sensor_msgs/msg/MultiDOFJointState')
     assert (code, out) == (1, 'Waiting for at least 1 matching subscription(s)...\n')
