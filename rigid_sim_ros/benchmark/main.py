@@ -15,6 +15,7 @@
 """The command `rigid_sim_benchmark`."""
 
 import argparse
+from inspect import getdoc
 import sys
 
 from rigid_sim_ros.benchmark import report_command, run_command
@@ -58,7 +59,7 @@ def command_line():
         formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
     for name, (add_options, run, summary) in COMMANDS.items():
-        command = commands.add_parser(name, help=summary, description=add_options.__doc__,
+        command = commands.add_parser(name, help=summary, description=getdoc(add_options),
                                       formatter_class=argparse.RawDescriptionHelpFormatter)
         add_options(command)
         command.set_defaults(command=run)
