@@ -59,7 +59,7 @@ class Island:
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
-        self.impulses = memory_of(older)
+        self.impulses = memory_of(older, pairs_a, pairs_b)
         """`Impulses` of the last step's halves, by name."""
         self._near = None
         """The margin [m] and the `Near` that were found last."""

@@ -159,11 +159,20 @@ class Near:
         return solution.force.reshape(3, -1)
 
 
-def memory_of(islands):
-    """Return what islands have in their `impulses`, together."""
+def memory_of(islands, pairs_a, pairs_b):
+    """
+    Return what islands have in their `impulses` of these pairs (p,) int, together.
+
+    Of these only: an island that also kept the others' would hand them on, and all memory would
+    double whenever islands are found anew.
+    """
+    wanted = set(zip(pairs_a.tolist(), pairs_b.tolist()))
     together = {}
     for island in islands:
         for half, (pairs, world) in island.impulses.items():
+            kept = [place for place, (a, b) in enumerate(pairs)
+                    if (a, b) in wanted or (b, a) in wanted]
             before = together.get(half, ([], np.zeros((3, 0))))
-            together[half] = before[0] + pairs, np.concatenate((before[1], world), axis=1)
+            together[half] = (before[0] + [pairs[place] for place in kept],
+                              np.concatenate((before[1], world.take(kept, axis=1)), axis=1))
     return together
