@@ -112,16 +112,19 @@ class Near:
         guess = self._remembered(half)
         impulse = np.zeros((3, count))
         closing = free[0, which] < 0.0
+        if guess is not None:
+            closing |= guess[0, which] > 0.0
         rounding = -canonical.ACCURACY * float(np.abs(free[:, which]).max())
         while closing.any():
             for group in self.groups(which[closing]):
                 impulse[:, group] = self._solved(free, group, slip, guess)
-            # most contacts are not reached: who is left out has to open by itself
+            # many contacts are not reached: who is left out has to open by itself
             after = free[0] + self._response[:count] @ impulse.ravel()
             overlooked = ~closing & (after[which] < rounding)
             if not overlooked.any():
                 break
             closing |= overlooked
+            guess = impulse
         self.island.impulses[half] = self.scene_pairs, self.rows.world(impulse.ravel())
         return motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
 
