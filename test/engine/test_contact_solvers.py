@@ -148,6 +148,17 @@ def test_projected_gradient_finds_the_motion():
                                problem.response @ solve(problem).force, atol=1e-7)
 
 
+def test_projected_gradient_shortens_a_step_that_is_too_long():
+    """A step far beyond the reciprocal of the largest eigenvalue is found out, not diverged on."""
+    problem = problem_of(CORNERS, (1.0, 0.3, -0.4), (0.1, -0.2, 3.0), 0.3)
+    step = 50 / np.linalg.eigvalsh(problem.response)[-1]
+    force, _, residual = accelerated(
+        problem.response.__matmul__, step, Cones(problem.friction), problem.free, np.zeros(12),
+        1e-10, 2000)
+    assert residual < 1e-10
+    assert violation(problem.response, problem.free, problem.friction, force) < 1e-8
+
+
 def test_contacts_that_hardly_slide():
     """Two blocks of contacts at the edge of their cones: Newton's circles are broken."""
     random = np.random.default_rng(0)

@@ -27,6 +27,9 @@ and not on the gradient: a tenth of the error after 40 iterations, measured on c
 import numpy as np
 
 _TINY = 1e-300
+_SHORTER = 0.9
+"""Of the longest step that a change would have allowed."""
+
 _TESTED = 4
 """Convergence is tested at the first two iterations and then at each of so many."""
 
@@ -78,7 +81,7 @@ def accelerated(response, step, cones, free, force, tolerance, iterations):
     response : callable
         Gives the motion (n,) made by forces (n,); symmetric, not negative.
     step : float
-        At most the reciprocal of its largest eigenvalue.
+        About the reciprocal of its largest eigenvalue; shortened where it turns out too long.
     cones : object
         `project(force)` draws forces back onto what is allowed, in place.
     free : (n,)
@@ -97,16 +100,23 @@ def accelerated(response, step, cones, free, force, tolerance, iterations):
     made_here = made_ahead = response(here)
     theta, residual = 1.0, np.inf
     for iteration in range(1, iterations + 1):
-        gradient = made_ahead + free
-        there = ahead - step * gradient
+        there = ahead - step * (made_ahead + free)
         cones.project(there)
+        change = there - ahead
         if iteration <= 2 or iteration % _TESTED == 0 or iteration == iterations:
-            residual = float(np.abs(there - ahead).max(initial=0.0)) / step
+            residual = float(np.abs(change).max(initial=0.0)) / step
             if residual <= tolerance:
                 break
         made_there = response(there)
+        size, curvature = change @ change, change @ (made_there - made_ahead)
+        if curvature * step > size:
+            # the step is longer than the response allows: back, and on with a shorter one
+            step = _SHORTER * size / curvature
+            theta = 1.0
+            ahead, made_ahead = here, made_here
+            continue
         moved = there - here
-        if (ahead - there) @ moved > 0.0:
+        if change @ moved < 0.0:
             # the projected step goes back where it came from: on without momentum
             theta = 1.0
             ahead, made_ahead = there, made_there

@@ -21,7 +21,7 @@ contact points they have room for. The Jacobian is scaled by M^-1/2, so that mas
 
 import numpy as np
 
-POINTS = (1, 2, 4, 8)
+POINTS = (1, 2, 4, 8, 16)
 """Contact points a block has room for: a pair goes where it fits."""
 
 
@@ -71,7 +71,7 @@ class BlockRows:
         self.count = sum(block.shape[0] * block.shape[1] for block in blocks)
 
     def motion(self, velocity):
-        """Return the motion (3k,) of all rows for scaled velocities, flat (6 slots,)."""
+        """Return how all rows move, (3k,), for scaled velocities, flat (6 slots,)."""
         result = np.empty((3, self.count))
         for block in self._blocks:
             found = np.matmul(block.rows, velocity.take(block.places)[:, :, None])

@@ -22,6 +22,7 @@ import pytest
 
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile import dissipating
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
 from rigid_sim_ros.engine.model import Material
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
@@ -126,6 +127,16 @@ def test_many_balls_roll_on_a_pushed_plate():
     np.testing.assert_allclose(run.state.linear_velocity[0, 9], 0.5 * acceleration, rtol=1e-6)
     np.testing.assert_allclose(run.state.linear_velocity[0, :9], 0.5 * acceleration * 2 / 7,
                                rtol=1e-6)
+
+
+def test_impulses_that_have_not_converged_add_no_energy():
+    """A change of velocity that would raise the energy is made as far as it does not."""
+    velocity = np.array((1.0, 0.0, -2.0))
+    good, bad, worse = -0.5 * velocity, -4.0 * velocity, 0.1 * velocity
+    np.testing.assert_array_equal(dissipating(velocity, good), 0.5 * velocity)
+    after = dissipating(velocity, bad)
+    assert after @ after == pytest.approx(velocity @ velocity, rel=1e-14)
+    np.testing.assert_array_equal(dissipating(velocity, worse), velocity)
 
 
 def test_blocks_multiply_as_a_matrix_does():

@@ -25,6 +25,7 @@ shared out as the solver comes upon them, which is not the canonical choice of s
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.contacts import Contacts
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
@@ -32,20 +33,20 @@ from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
 
+FAST = 0.005
+"""Of the length scale: a way in one step beyond which other features may meet than are near."""
+
 ITERATIONS = 60
 """Of the solver in a step, at most; what hardly moves needs a few."""
 
 ACCURACY = 1e-5
 """Of what the acceleration scale does to velocities in a step: where the solver stops."""
 
-MARGIN = 0.02
-"""Of the length scale: contacts are known this far off, and further where it is faster."""
-
-KEPT_STEPS = 4
-"""Steps for which contacts are expected to last; more cost contacts, less cost finding them."""
-
-TURN = 0.05
-"""Angle [rad] after which contacts are found anew: gaps are followed to first order only."""
+KEPT_WAY = 0.02
+"""
+Of the length scale: the way points of a pair may pass each other on before contacts are found
+anew. Further on others meet than are known, and gaps are followed to first order only.
+"""
 
 OVERLAP = 3e-4
 """Of the length scale: overlap that is left; it keeps contacts closed."""
@@ -54,7 +55,7 @@ TESTED_STEPS = 12
 """Of so many steps one begins with a test whether all stands as it is, if it is slow."""
 
 QUIET_TIME = 0.25
-"""Time [s] all bodies must have been where they are to rest, times the root of metres of length."""
+"""Time [s] all bodies must have been where they are to rest, times the root of their length."""
 
 QUIET_WAY = 2e-3
 """Of the length scale: moves that do not count."""
@@ -86,9 +87,10 @@ class Pile:
         for pile in older:
             self.quiet.take_over(pile.quiet)
         self.contacts = None
+        """The `PileContacts` in use."""
         self._forces = None
-        self._turned = 0.0
-        self._room = None
+        self._way = None
+        """(p,) [m]: how far points of each pair may have passed each other since then."""
         self._steps = 0
 
     def advance(self, state, start, duration):
@@ -109,9 +111,9 @@ class Pile:
                 return contacts, True
         self._steps += 1
         closing = duration * island.closing(motion)
-        if self.contacts is None or (self._room < closing).any() or self._turned > TURN:
+        if self.contacts is None or (self._way > KEPT_WAY * scales.length).any():
             motion = self._renew(motion, free, scales, closing, duration)
-        self._room -= closing
+        self._way += closing
         motion, closed = self._step(motion, free, scales, start, duration)
         radius = island.bodies.bounding_radius[:island.member_count]
         quiet = self.quiet.shortest(start + duration, motion, radius, QUIET_WAY * scales.length)
@@ -120,7 +122,7 @@ class Pile:
         return closed, resting
 
     def impulses(self):
-        """Return (keys, points, impulses (3, k)) of the last step; keys are those of the scene."""
+        """Return keys (of the scene), points and impulses, (3, k) each, of the last step."""
         found, columns = self.contacts.contacts, self._island.columns
         force, axes = self.contacts.forces(self._forces), self.contacts.axes
         world = axes[0] * force[0] + axes[1] * force[1] + axes[2] * force[2]
@@ -128,31 +130,46 @@ class Pile:
         return columns[found.body_a] * count + columns[found.body_b], found.point, world
 
     def _renew(self, motion, free, scales, closing, duration):
-        """
-        Find the contacts of a `Motion` and return it with overlaps pushed out.
-
-        They are looked for where the bodies would be after the step without contact: features
-        that would overlap then are the ones that meet, which at the start are often others.
-        """
+        """Find the contacts of a `Motion` and return it with overlaps pushed out."""
         island = self._island
         vector = None
         if self.contacts is not None:
             self._sources = [self.impulses()]
             vector = self.contacts.vector
-        self._room = MARGIN * scales.length + KEPT_STEPS * closing
-        ahead = free.kicked(motion, duration)
-        ahead = ahead.moved(slice(None), duration * ahead.linear, duration * ahead.angular)
-        found = island.find_contacts(ahead, self._room)
-        self.contacts = contacts = PileContacts(island.bodies, found, ahead, vector)
-        # the gaps now, as far as they change at the rates there
-        contacts.gap = contacts.gap - duration * contacts.motion(
-            contacts.rows.motion(contacts.scaled(ahead)))[0]
-        self._turned = 0.0
+        self._way = np.zeros_like(closing)
+        found, arms = self._found(motion, free, scales, closing, duration)
+        self.contacts = contacts = PileContacts(
+            island.bodies, found, arms, motion.orientation, vector)
         self._forces = contacts.row_forces(self._remembered(found, MATCH * scales.length))
         allowed = OVERLAP * scales.length
         if (contacts.gap < -2 * allowed).any():
             motion = self._pushed_out(motion, allowed)
         return motion
+
+    def _found(self, motion, free, scales, closing, duration):
+        """
+        Return the contacts near a `Motion`, points of a pair together, and their arms (2, 3, k).
+
+        Where it is fast they are looked for, besides, where the bodies would be after the step
+        without contact: what would overlap then meets in it, and is often not what is near now.
+        """
+        island = self._island
+        way = KEPT_WAY * scales.length
+        found = island.find_contacts(motion, way + 2 * closing)
+        arms = _arms(found, motion)
+        fast = closing > FAST * scales.length
+        if not fast.any():
+            return found, arms
+        kicked = free.kicked(motion, duration)
+        ahead = kicked.moved(slice(None), duration * kicked.linear, duration * kicked.angular)
+        later = island.find_contacts(ahead, np.where(fast, way, -np.inf))
+        later_arms = _arms(later, ahead)
+        # the gaps of now, as far as they change at the rates of then
+        later.separation -= duration * rotation.dot(later.normal, _across(
+            later, kicked, later_arms))
+        joined = Contacts.join([found, later])
+        order = np.argsort(joined.body_a * island.bodies.count + joined.body_b, kind='stable')
+        return joined.select(order), np.concatenate((arms, later_arms), axis=2)[:, :, order]
 
     def _remembered(self, found, reach):
         """Return impulses (3, k) in contact axes to start from."""
@@ -196,7 +213,7 @@ class Pile:
             free_motion + contacts.row_motion(bias, _NEVER), self._forces,
             ACCURACY * scales.acceleration * duration, ITERATIONS)
         island.world.work.solver_iterations += used
-        velocity += rows.momentum(self._forces)
+        velocity = dissipating(velocity, rows.momentum(self._forces))
         contacts.gap = contacts.gap + duration * contacts.motion(rows.motion(velocity))[0]
         motion = self._drifted(motion, kicked, velocity, free, duration)
         force = contacts.forces(self._forces)
@@ -213,7 +230,6 @@ class Pile:
         struck = Motion(motion.position, motion.orientation, linear, angular)
         turn = rotation.from_rotation_vector(duration * angular)
         orientation = rotation.normalize(rotation.multiply(turn, motion.orientation))
-        self._turned += duration * float(np.abs(angular).max(initial=0.0))
         return Motion(motion.position + duration * linear, orientation, linear,
                       free.carried(motion, kicked, struck, orientation, duration))
 
@@ -227,3 +243,29 @@ class Pile:
                                 IMPACT, found.point[:, row], found.normal[:, row], impulse,
                                 speed[row])
         world.work.impacts += bool(which.any())
+
+
+def dissipating(velocity, change):
+    """
+    Return scaled velocities after contact impulses, which never add energy.
+
+    Impulses that have not converged may: then only so much of the change is made that the energy
+    stays. Momenta are kept either way.
+    """
+    along, size = velocity @ change, change @ change
+    if 2.0 * along + size <= 0.0:
+        return velocity + change
+    return velocity + max(0.0, -2.0 * along / size) * change
+
+
+def _arms(contacts, motion):
+    """Return the arms (2, 3, k) [m] of contacts from the centres of their bodies."""
+    return np.stack([contacts.point - motion.position[:, body]
+                     for body in (contacts.body_a, contacts.body_b)])
+
+
+def _across(contacts, motion, arms):
+    """Return the velocities (3, k) [m/s] of b minus a at the ends of arms."""
+    velocity = [motion.linear[:, body] + rotation.cross(motion.angular[:, body], arm)
+                for body, arm in zip((contacts.body_a, contacts.body_b), arms)]
+    return velocity[1] - velocity[0]

@@ -49,7 +49,7 @@ class DenseRows:
         self.count = len(rows) // 3
 
     def motion(self, velocity):
-        """Return the motion (3k,) of all rows for scaled velocities, flat (6 slots,)."""
+        """Return how all rows move, (3k,), for scaled velocities, flat (6 slots,)."""
         return self._rows @ velocity
 
     def momentum(self, force):
@@ -73,33 +73,35 @@ class PileContacts:
     bodies : Bodies
         The island's own.
     contacts : Contacts
-        Points of a pair next to each other, at most eight.
-    motion : Motion
+        Points of a pair next to each other, at most sixteen.
+    arms : (2, 3, k) [m]
+        From the centres of a and b to the points.
+    orientation : (4, n)
+        Of the island's bodies.
     vector : (6 slots,) or None
         Scaled velocities close to the fastest way to move the contacts, from those before.
 
     """
 
-    def __init__(self, bodies, contacts, motion, vector):
+    def __init__(self, bodies, contacts, arms, orientation, vector):
         """See the class."""
         self.contacts = contacts
         a, b = contacts.body_a, contacts.body_b
         self._members = members = bodies.moving_count
-        self._frames = rotation.matrix(motion.orientation)
+        self._frames = rotation.matrix(orientation)
         self.axes = np.stack((contacts.normal, *tangents(contacts.normal)))
         scale = mass_scale(bodies, np.arange(bodies.count))
         self._scale = scale[:, :members]
         rows = np.stack([
-            scaled_rows(self.axes, contacts.point - motion.position[:, body],
-                        self._frames[:, :, body], sign * scale[:, body])
-            for body, sign in ((a, -1.0), (b, 1.0))], axis=2)
+            scaled_rows(self.axes, arm, self._frames[:, :, body], sign * scale[:, body])
+            for body, arm, sign in ((a, arms[0], -1.0), (b, arms[1], 1.0))], axis=2)
         # rows of equal size: half the error of the solver
         size = np.sqrt((rows * rows).sum(axis=(2, 3)))
         np.maximum(size[1], size[2], out=size[1])
         size[2] = size[1]
         self._units = size.min(initial=np.inf) / size
         rows *= self._units[:, :, None, None]
-        self.gap = contacts.separation.copy()
+        self.gap = contacts.separation
         self.restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
         slots = np.minimum(np.stack((a, b)), members)
         self._places = np.arange(len(a))
@@ -172,7 +174,7 @@ class PileContacts:
         return vector.reshape(3, -1)[:, self._places] / self._units
 
     def forces(self, vector):
-        """Return forces (3, k) by axis and contact of a vector by row."""
+        """Return a vector by row as one by axis and contact, (3, k)."""
         return vector.reshape(3, -1)[:, self._places] * self._units
 
     def _flat(self, values, missing):
@@ -192,7 +194,7 @@ class PileContacts:
         return result.ravel()
 
     def velocities(self, scaled):
-        """Return linear and angular velocities (3, m) of scaled ones."""
+        """Return the linear and angular velocity, (3, m) each, of scaled ones."""
         unscaled = scaled.reshape(-1, 6)[:-1].T * self._scale
         return unscaled[:3], rotation.transform(
             self._frames[:, :, :self._members], unscaled[3:])
