@@ -23,17 +23,17 @@ above its floor and the friction inside its disc. The derivative of force less p
 with both matrices block-diagonal, a contact's 3 x 3 each. They are made contact after contact in
 plain floats, which is three times faster than arrays for the few contacts this is meant for.
 
-The inverse of one iteration is kept for the next as long as that gains three digits. The first guess
-is that all closed contacts stick, which one linear system tells. Once it is known who sticks and
-who slides, refining the compliance away (see `canonical`) takes a product each time.
+The inverse of one iteration is kept for the next as long as that gains three digits. The first
+guess is that all closed contacts stick, which one linear system tells. Once it is known who sticks
+and who slides, refining the compliance away (see `canonical`) takes a product each time.
 """
 
-from functools import lru_cache
 from math import sqrt
 
 import numpy as np
 
 from rigid_sim_ros.engine.solvers import canonical
+from rigid_sim_ros.engine.solvers.contact_equations import linearise, places, sticking
 
 MAX_ITERATIONS = 20
 """From nothing 2 to 10 do; what has not converged by then mostly goes in circles."""
@@ -185,7 +185,7 @@ class Newton:
         forces, motions = force.tolist(), (free + self._matrix @ force).tolist()
         rows, size = [], 0.0
         for contact, constants in enumerate(self._constants):
-            row = _linearise(forces[contact::count], motions[contact::count], constants)
+            row = linearise(forces[contact::count], motions[contact::count], constants)
             rows.append(row)
             normal, first, second = row[0] / constants[0], row[1] / constants[1], (
                 row[2] / constants[1])
@@ -222,7 +222,7 @@ class Newton:
         motion = self._free
         if self.floor.any():
             motion = motion + self._matrix @ self.floor - self._compliance * self.floor
-        rows = [_sticking(*each) for each in zip(
+        rows = [sticking(*each) for each in zip(
             motion.reshape(3, -1).T.tolist(), self._constants)]
         if not self._invert(rows):
             return self.floor
@@ -231,7 +231,7 @@ class Newton:
     def _invert(self, rows):
         """Invert the derivative in which contacts have these rows; return whether it could be."""
         count = self._count
-        motion_places, force_places = _places(count)
+        motion_places, force_places = places(count)
         slopes = np.array(rows).T
         self._by_motion = np.zeros((3 * count, 3 * count))
         by_force = np.zeros((3 * count, 3 * count))
@@ -243,68 +243,3 @@ class Newton:
         except np.linalg.LinAlgError:
             return False
         return True
-
-
-def _linearise(force, motion, constants):
-    """
-    Return one contact's equations: 3 residuals, 5 derivatives by motion, 7 by force.
-
-    The places they have in the matrices are those of `_places`.
-    """
-    normal, first, second = force
-    motion_n, motion_1, motion_2 = motion
-    step_n, step_t, friction, floor, slip_1, slip_2 = constants
-    if normal - floor > step_n * motion_n:
-        head, motion_nn, force_nn = step_n * motion_n, step_n, 0.0
-    else:
-        head, motion_nn, force_nn = normal - floor, 0.0, 1.0
-    limit, grows = (friction * normal, friction) if normal > 0.0 else (0.0, 0.0)
-    if slip_1 or slip_2:
-        return (head, first + limit * slip_1, second + limit * slip_2,
-                motion_nn, 0.0, 0.0, 0.0, 0.0,
-                force_nn, 1.0, 0.0, 0.0, 1.0, grows * slip_1, grows * slip_2)
-    target_1, target_2 = first - step_t * motion_1, second - step_t * motion_2
-    length = sqrt(target_1 * target_1 + target_2 * target_2)
-    if length <= limit:
-        return (head, step_t * motion_1, step_t * motion_2,
-                motion_nn, step_t, 0.0, 0.0, step_t,
-                force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    unit_1, unit_2 = target_1 / length, target_2 / length
-    # derivative of the projection by its target: across the direction only
-    turn = limit / length
-    turn_11, turn_22 = turn * unit_2 * unit_2, turn * unit_1 * unit_1
-    turn_12 = -turn * unit_1 * unit_2
-    return (head, first - limit * unit_1, second - limit * unit_2,
-            motion_nn, step_t * turn_11, step_t * turn_12, step_t * turn_12, step_t * turn_22,
-            force_nn, 1.0 - turn_11, -turn_12, -turn_12, 1.0 - turn_22,
-            -grows * unit_1, -grows * unit_2)
-
-
-def _sticking(motion, constants):
-    """Return `_linearise` at the floor's motion for a contact that sticks if it is closed."""
-    motion_n, motion_1, motion_2 = motion
-    step_n, step_t, friction, floor, slip_1, slip_2 = constants
-    closes = motion_n < 0.0
-    normal = (step_n * motion_n, step_n, 0.0) if closes else (0.0, 0.0, 1.0)
-    head, motion_nn, force_nn = normal
-    limit = friction * floor
-    if not closes and floor <= 0.0:
-        slip_1 = slip_2 = friction = 0.0
-    elif not (slip_1 or slip_2):
-        return (head, step_t * motion_1, step_t * motion_2, motion_nn, step_t, 0.0, 0.0, step_t,
-                force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return (head, limit * slip_1, limit * slip_2, motion_nn, 0.0, 0.0, 0.0, 0.0,
-            force_nn, 1.0, 0.0, 0.0, 1.0, friction * slip_1, friction * slip_2)
-
-
-@lru_cache(maxsize=64)
-def _places(count):
-    """Return where derivatives by motion (5, k) and force (7, k) go in flat (3k, 3k) matrices."""
-    contact = np.arange(count)
-
-    def place(row, column):
-        return (row * count + contact) * 3 * count + column * count + contact
-
-    tangential = [place(1, 1), place(1, 2), place(2, 1), place(2, 2)]
-    return (np.array([place(0, 0), *tangential]),
-            np.array([place(0, 0), *tangential, place(1, 0), place(2, 0)]))
