@@ -109,7 +109,7 @@ def accelerated(response, step, cones, free, force, tolerance, iterations):
                 break
         made_there = response(there)
         size, curvature = change @ change, change @ (made_there - made_ahead)
-        if curvature * step > size:
+        if 0.0 < size < curvature * step:
             # the step is longer than the response allows: back, and on with a shorter one
             step = _SHORTER * size / curvature
             theta = 1.0

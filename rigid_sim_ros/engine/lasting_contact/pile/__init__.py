@@ -42,6 +42,12 @@ ITERATIONS = 60
 ACCURACY = 1e-5
 """Of what the acceleration scale does to velocities in a step: where the solver stops."""
 
+HIT_ITERATIONS = 25
+"""Of the solver in a step in which something hits; twice as many leave a third less overlap."""
+
+HIT_ACCURACY = 1e-3
+"""Of the speed of what hits: where the solver stops then."""
+
 KEPT_WAY = 0.02
 """
 Of the length scale: the way points of a pair may pass each other on before contacts are found
@@ -202,24 +208,26 @@ class Pile:
         kicked = free.kicked(motion, duration)
         speed = contacts.motion(rows.motion(contacts.scaled(motion)))[0]
         limit = scales.impact_speed(duration)
-        rebounds = (speed < -limit) & (contacts.gap + duration * speed < 0)
+        hits = (speed < -limit) & (contacts.gap + duration * speed < 0)
         bias = np.zeros((3, len(speed)))
-        bias[0] = np.where(rebounds, contacts.restitution * speed,
+        bias[0] = np.where(hits, contacts.restitution * speed,
                            np.maximum(contacts.gap, 0.0) / duration)
         velocity = contacts.scaled(kicked)
         free_motion = rows.motion(velocity)
+        tolerance, iterations = ACCURACY * scales.acceleration * duration, ITERATIONS
+        if hits.any():
+            tolerance, iterations = HIT_ACCURACY * -float(speed.min()), HIT_ITERATIONS
         self._forces, used, _ = accelerated(
             rows.response, contacts.step, contacts.cones,
-            free_motion + contacts.row_motion(bias, _NEVER), self._forces,
-            ACCURACY * scales.acceleration * duration, ITERATIONS)
+            free_motion + contacts.row_motion(bias, _NEVER), self._forces, tolerance, iterations)
         island.world.work.solver_iterations += used
         velocity = dissipating(velocity, rows.momentum(self._forces))
         contacts.gap = contacts.gap + duration * contacts.motion(rows.motion(velocity))[0]
         motion = self._drifted(motion, kicked, velocity, free, duration)
         force = contacts.forces(self._forces)
         closed = force[0] > _PRESSED
-        if rebounds.any():
-            self._note(rebounds & closed, force, -speed, start + duration)
+        if hits.any():
+            self._note(hits & closed, force, -speed, start + duration)
         return motion, contacts.contacts.select(closed)
 
     def _drifted(self, motion, kicked, scaled, free, duration):
@@ -253,7 +261,7 @@ def dissipating(velocity, change):
     stays. Momenta are kept either way.
     """
     along, size = velocity @ change, change @ change
-    if 2.0 * along + size <= 0.0:
+    if 2.0 * along + size <= 0.0 or size == 0.0:
         return velocity + change
     return velocity + max(0.0, -2.0 * along / size) * change
 
