@@ -104,3 +104,17 @@ def test_a_spinning_body_held_against_another_does_not_rattle_for_ever():
         assert simulation.work.impacts < 40 * push
     assert simulation.work.contact_steps > 0
     assert np.isfinite(simulation.position).all()
+
+
+def test_a_field_of_cubes_falls_together():
+    """Bodies that do not move relative to each other never meet, however many they are."""
+    shape = Cube(0.2)
+    bodies = tuple(
+        Body(f'cube_{row}_{column}', shape, 1.0, shape.inertia(1.0),
+             position=(0.5 * row, 0.5 * column, 1.0)) for row in range(13) for column in range(13))
+    simulation = Simulation(Scene(bodies=bodies, planes=(Plane('ground'),)))
+    simulation.advance(0.3)
+    np.testing.assert_allclose(simulation.position[:, 2], 1.0 - 9.81 * 0.3 ** 2 / 2, rtol=1e-13)
+    simulation.advance(0.2)
+    assert simulation.work.impacts == len(bodies)
+    assert set(simulation.collisions['body_b']) == {len(bodies)}

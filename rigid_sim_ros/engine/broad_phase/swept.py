@@ -29,6 +29,9 @@ Radius of the spheres around the paths at which the horizon ends, in mean distan
 a body then has a neighbour whose path may cross its own every second time.
 """
 
+LONGEST_HORIZON = 1e9
+"""[s]: the horizon of bodies that do not move relative to each other, where a product is finite."""
+
 LEAST_GROWTH = 0.1
 """These spheres grow by at least this part of the bodies' radius: crowds need a horizon too."""
 
@@ -70,7 +73,7 @@ def swept_pairs(bodies, flying, solid, position, velocity, acceleration):
     motion = [values.take(movers, axis=1) for values in (position, velocity, acceleration)]
     relative = [motion[0], *(values - values.mean(axis=1, keepdims=True)
                              for values in motion[1:])]
-    horizon = min(_horizon(radius, *relative, motion[0]),
+    horizon = min(LONGEST_HORIZON, _horizon(radius, *relative, motion[0]),
                   _horizon(radius, *motion, position[:, obstacles]))
     a, b = spheres_with_spheres(*around_paths(radius, *relative, horizon))
     pairs = [(movers[a], movers[b])]
