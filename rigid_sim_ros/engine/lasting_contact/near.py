@@ -24,10 +24,6 @@ from rigid_sim_ros.engine.graph import connected
 from rigid_sim_ros.engine.solvers import canonical, contact_rows, ContactProblem, solve
 
 
-_ROUNDING = 5e-16
-"""What a unit quaternion loses when it is put away and taken out again."""
-
-
 class Near:
     """
     The contacts (k) near a pose of an island's bodies; velocities do not matter for it.
@@ -77,8 +73,9 @@ class Near:
         return mixed_friction(friction[self.contacts.body_a], friction[self.contacts.body_b])
 
     def is_at(self, motion):
-        """Return whether these are the poses of a `Motion`, but for rounding."""
-        return same_poses(self, motion)
+        """Return whether these are the poses of a `Motion`, to the last bit."""
+        return (np.array_equal(self.position, motion.position)
+                and np.array_equal(self.orientation, motion.orientation))
 
     def across(self, motion):
         """Return the velocity [m/s] of b minus that of a at the contacts, (3, k), world axes."""
@@ -163,12 +160,6 @@ class Near:
         solution = solve(problem, guess)
         self.island.world.work.solver_iterations += solution.iterations
         return solution.force.reshape(3, -1)
-
-
-def same_poses(one, other):
-    """Return whether two with `position` and `orientation` are the same, but for rounding."""
-    return (np.array_equal(one.position, other.position)
-            and float(np.abs(one.orientation - other.orientation).max()) <= _ROUNDING)
 
 
 def memory_of(islands, pairs_a, pairs_b):
