@@ -46,6 +46,15 @@ somebody has moved so far: what rests need not look again.
 SKIN_STEPS = 8
 """Bodies are slow if the skin lasts for at least so many steps."""
 
+FEW_TOGETHER = 6
+"""
+Bodies that touch others which are stepped island by island, to second order where they are few;
+more are stepped all together, as one pile.
+"""
+
+CROWD = 24
+"""Bodies in lasting contact above which all of them are one pile."""
+
 CLOSED = 1e-6
 """A sleeping body nearer than this part of the smaller one is touched."""
 
@@ -118,7 +127,7 @@ class Islands:
         both = b < bodies.moving_count
         a, b = a[both], b[both]
         mixed = self.touching[a] != self.touching[b]
-        a, b = a[mixed], b[mixed]
+        a, b = _within(bodies, state.position, a[mixed], b[mixed], reach)
         gap = separations(bodies, a, b, state.position, state.orientation)
         near = gap < reach[a] + reach[b] + CLOSED * bodies.bounding_radius[a]
         there = np.where(self.touching[a], b, a)[near]
@@ -135,11 +144,12 @@ class Islands:
         for island in self._current(members, start, end, state):
             outcome = advance_island(island, state, start, end - start)
             self._pairs.update(end, island, outcome.contacts)
-            if outcome.resting:
-                self._mates[island.members] = island.members[0]
-                resting.append(island.members)
-            elif not outcome.touching.all():
-                parting.append(_alone(island, outcome.touching))
+            if outcome.resting.any():
+                resting.append(island.members[outcome.resting])
+                self._mates[resting[-1]] = island.members[
+                    _groups(island, outcome.contacts)[outcome.resting]]
+            if not outcome.touching.all():
+                parting.append(_alone(island, outcome.touching | outcome.resting))
         changes = Changes(np.concatenate(parting), np.concatenate(resting))
         if len(changes.parting) or len(changes.resting):
             self.touching[changes.parting] = self.touching[changes.resting] = False
@@ -169,12 +179,14 @@ class Islands:
         solid[bodies.moving_count:] = True
         a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + skin)
         ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
-        a, b = a[ours], b[ours]
+        a, b = _within(bodies, state.position, a[ours], b[ours], reach + 0.5 * skin)
+        if len(members) > CROWD:
+            return [self._island(members, a, b)]
         gap = separations(bodies, a, b, state.position, state.orientation)
         near = gap <= reach[a] + reach[b] + skin
         a, b = a[near], b[near]
         both = is_member[a] & is_member[b]
-        labels = component_labels(bodies.count, a[both], b[both])
+        labels = _with_the_many(component_labels(bodies.count, a[both], b[both]), members)
         of_pair, of_member = labels[np.where(is_member[a], a, b)], labels[members]
         return [self._island(members[of_member == label], a[of_pair == label],
                              b[of_pair == label]) for label in np.unique(of_member)]
@@ -182,7 +194,8 @@ class Islands:
     def _island(self, members, body_a, body_b):
         """Return the island there was of these members (m,) and pairs (p,), or a new one."""
         for island in self._islands:
-            if np.array_equal(island.members, members) and island.covers(body_a, body_b):
+            if (np.array_equal(island.members, members) and island.covers(body_a, body_b)
+                    and self.asleep[island.others(self._world.bodies.moving_count)].all()):
                 return island
         return Island(self._world, members, body_a, body_b, self._islands)
 
@@ -197,6 +210,36 @@ class Islands:
         speed = linear + angular * self._world.bodies.bounding_radius[moving]
         reach[moving] = REACH_FACTOR * (end - start) * (speed + pull * (end - start))
         return reach
+
+
+def _within(bodies, position, body_a, body_b, reach):
+    """Return those of pairs (p,) whose bounding spheres come together by the reach (n,) [m]."""
+    apart = position[:, body_b] - position[:, body_a]
+    reach = reach + np.where(np.isfinite(bodies.bounding_radius), bodies.bounding_radius, 0.0)
+    limit = reach[body_a] + reach[body_b]
+    near = (rotation.dot(apart, apart) <= limit * limit) | (body_b >= bodies.body_count)
+    return body_a[near], body_b[near]
+
+
+def _with_the_many(labels, members):
+    """
+    Return the labels (n,) with those of all groups of several members made one, if they are many.
+
+    One pile of all of them costs less than as many islands.
+    """
+    found, sizes = np.unique(labels[members], return_counts=True)
+    several = found[sizes > 1]
+    if sizes[sizes > 1].sum() <= FEW_TOGETHER:
+        return labels
+    return np.where(np.isin(labels, several), several[0], labels)
+
+
+def _groups(island, contacts):
+    """Return the first of the members (m,) that each member of an island touches, by way of any."""
+    count = island.member_count
+    a, b = contacts.body_a, contacts.body_b
+    both = (a < count) & (b < count)
+    return component_labels(count, a[both], b[both])
 
 
 def _alone(island, touching):

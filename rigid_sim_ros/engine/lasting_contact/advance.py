@@ -30,8 +30,8 @@ FEW = 3
 class Outcome(NamedTuple):
     """How an island is after it has been advanced."""
 
-    resting: bool
-    """All of it is at rest and in equilibrium; its velocities have been set to zero."""
+    resting: np.ndarray
+    """(m,) bool: which members are at rest, with all they touch; they have no velocity left."""
 
     touching: np.ndarray
     """(m,) bool: which members touch anything; those that do not are in flight."""
@@ -59,7 +59,8 @@ def advance_island(island, state, start, duration):
     touching, resting = found
     touched = np.zeros(island.bodies.count, dtype=bool)
     touched[touching.body_a] = touched[touching.body_b] = True
-    return Outcome(resting, touched[:island.member_count], touching)
+    return Outcome(np.broadcast_to(resting, island.member_count),
+                   touched[:island.member_count], touching)
 
 
 def _on_plane(island, state, start, duration):

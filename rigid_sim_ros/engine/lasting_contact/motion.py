@@ -55,10 +55,15 @@ class Motion:
         after_angular[:, touched] += angular
         return Motion(self.position, self.orientation, after_linear, after_angular)
 
-    def stopped(self):
-        """Return the motion with all velocities zero."""
-        zeros = np.zeros_like(self.linear)
-        return Motion(self.position, self.orientation, zeros, zeros)
+    def stopped(self, which=None):
+        """Return the motion with all velocities zero, or those of the first (m,) that are True."""
+        if which is None:
+            zeros = np.zeros_like(self.linear)
+            return Motion(self.position, self.orientation, zeros, zeros)
+        linear, angular = self.linear.copy(), self.angular.copy()
+        linear[:, :len(which)][:, which] = 0.0
+        angular[:, :len(which)][:, which] = 0.0
+        return Motion(self.position, self.orientation, linear, angular)
 
     def moved(self, touched, linear, angular):
         """Return the motion with bodies `touched` (m,) moved by (3, m) and turned by (3, m)."""

@@ -39,17 +39,17 @@ FEW_CONTACTS = 60
 
 
 def slow(island, scales, motion):
-    """Return whether no point of the members is faster than what counts as rest."""
+    """Return which members (m,) bool have no point faster than what counts as rest."""
     count = island.member_count
     radius = island.bodies.bounding_radius[:count]
     limit = units.REST * scales.speed
-    return bool(np.abs(motion.linear[:, :count]).max() <= limit
-                and (np.abs(motion.angular[:, :count]) * radius).max() <= limit)
+    return ((np.abs(motion.linear[:, :count]).max(axis=0) <= limit)
+            & (np.abs(motion.angular[:, :count]).max(axis=0) * radius <= limit))
 
 
-def stands(island, free, scales, motion, contacts):
+def stands(island, free, scales, motion, contacts, members):
     """
-    Return whether touching contacts hold an island of many bodies.
+    Return whether touching contacts hold some of an island's members, (m,) bool.
 
     Where there are very many contacts that is only looked for with all of them pressing and
     sticking, and otherwise said not to be so.
@@ -69,22 +69,22 @@ def stands(island, free, scales, motion, contacts):
     if solution is None:
         return False
     left = pull.struck(rows.touched, *rows.change(solution.force))
-    return _held(island, scales, left)
+    return bool(_held(island, scales, left)[members].all())
 
 
 def at_rest(free, scales, motion, near, touching):
     """Return whether an island rests in a `Motion` on contacts (m,) int of those `Near` it."""
     island = near.island
-    if not touching.size or not slow(island, scales, motion):
+    if not touching.size or not slow(island, scales, motion).all():
         return False
-    return _held(island, scales, second_half(
-        free.kicked(motion.stopped(), 1.0), near, touching, STATIC))
+    return bool(_held(island, scales, second_half(
+        free.kicked(motion.stopped(), 1.0), near, touching, STATIC)).all())
 
 
 def _held(island, scales, left):
-    """Return whether hardly any velocity is left in a `Motion` after a second of all forces."""
+    """Return which members (m,) hardly move in a `Motion` left by a second of all forces."""
     count = island.member_count
     radius = island.bodies.bounding_radius[:count]
     allowed = units.EQUILIBRIUM * scales.acceleration
-    return bool(np.abs(left.linear[:, :count]).max() <= allowed
-                and (np.abs(left.angular[:, :count]) * radius).max() <= allowed)
+    return ((np.abs(left.linear[:, :count]).max(axis=0) <= allowed)
+            & (np.abs(left.angular[:, :count]).max(axis=0) * radius <= allowed))

@@ -33,7 +33,7 @@ def advance_in_steps(island, state, start, duration):
     free = island.free_motion(state)
     scales = island.scales(free)
     motion = island.gather(state)
-    parts = _parts(island, free, motion, duration)
+    parts = parts_of(island, free, motion, duration)
     step = duration / parts
     limits = Limits.of(scales, step)
     near = island.near(motion, limits.margin(step))
@@ -86,7 +86,7 @@ def _separated(island, motion, near, overlap, margin):
     return motion, island.near(motion, margin)
 
 
-def _parts(island, free, motion, duration):
+def parts_of(island, free, motion, duration):
     """Return how many parts a step needs so that nothing passes half of what is thinnest."""
     extents = island.bodies.half_extents
     # nothing passes through a plane unseen: it has no other side

@@ -24,6 +24,11 @@ import numpy as np
 POINTS = (1, 2, 4, 8, 16)
 """Contact points a block has room for: a pair goes where it fits."""
 
+FEW_POINTS = (4, 16)
+"""The same for fewer than `MANY_PAIRS`: empty rows cost less than more blocks."""
+
+MANY_PAIRS = 500
+
 
 class Block:
     """

@@ -74,7 +74,7 @@ class IslandRun:
     def run_to_rest(self, longest):
         """Advance until all rests and return when, or None after the longest duration."""
         while self.time < longest:
-            if self.step().resting:
+            if self.step().resting.all():
                 return self.time
         return None
 

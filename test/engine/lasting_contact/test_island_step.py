@@ -171,7 +171,7 @@ def test_two_thrown_cubes_come_to_rest(seed, restitution, friction):
     run = thrown(seed, restitution, friction)
     energy, rise = run.energy(), 0.0
     for _ in range(5 * 240):
-        resting = run.step().resting
+        resting = run.step().resting.all()
         energy, before = run.energy(), energy
         rise = max(rise, energy - before)
         if resting:
@@ -199,8 +199,8 @@ def test_a_balanced_stack_rests_at_once_and_a_tipping_one_does_not():
         return IslandRun([body('low', Cube(1.0), position=(0, 0, 0.5)),
                           body('high', Cube(1.0), position=(offset, 0, 1.5))], friction=0.5)
 
-    assert stack(0.49).step().resting
-    assert not stack(0.51).step().resting
+    assert stack(0.49).step().resting.all()
+    assert not stack(0.51).step().resting.all()
 
 
 def test_incline_holds_below_the_friction_angle_and_not_above():
@@ -212,7 +212,7 @@ def test_incline_holds_below_the_friction_angle_and_not_above():
         return IslandRun([body('cube', Cube(1.0), position=(0, 0, 0.5))], friction=friction,
                          gravity=gravity)
 
-    assert cube(0.37).step().resting
+    assert cube(0.37).step().resting.all()
     sliding = cube(0.36)
     sliding.run(1.0)
     expected = GRAVITY * (np.sin(angle) - 0.36 * np.cos(angle)) / 2

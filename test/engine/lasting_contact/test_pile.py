@@ -74,7 +74,7 @@ def test_heap_comes_to_rest(restitution):
     run = heap(1, restitution=restitution, friction=0.5)
     energy, rise = run.energy(), 0.0
     while run.time < 6:
-        resting = run.step().resting
+        resting = run.step().resting.all()
         energy, before = run.energy(), energy
         rise = max(rise, energy - before)
         if resting:
@@ -181,9 +181,9 @@ def test_quiet_bodies_are_timed():
 
     radius = np.ones(2)
     quiet = Quiet(np.array((4, 6)))
-    assert quiet.shortest(1.0, at(0.0), radius, 0.01) == 0.0
-    assert quiet.shortest(2.0, at(0.001), radius, 0.01) == 1.0
+    assert quiet.durations(1.0, at(0.0), radius, 0.01).tolist() == [0.0, 0.0]
+    assert quiet.durations(2.0, at(0.001), radius, 0.01).tolist() == [1.0, 1.0]
     younger = Quiet(np.array((6, 4)))
     younger.take_over(quiet)
-    assert younger.shortest(3.0, at(0.0), radius, 0.01) == 2.0
-    assert younger.shortest(4.0, at(0.5), radius, 0.01) == 0.0
+    assert younger.durations(3.0, at(0.0), radius, 0.01).tolist() == [2.0, 2.0]
+    assert younger.durations(4.0, at(0.5), radius, 0.01).tolist() == [3.0, 0.0]

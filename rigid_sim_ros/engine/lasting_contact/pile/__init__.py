@@ -25,16 +25,14 @@ shared out as the solver comes upon them, which is not the canonical choice of s
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
-from rigid_sim_ros.engine.contacts import Contacts
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile.finding import contacts_of_step, KEPT_WAY
+from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
-from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
+from rigid_sim_ros.engine.lasting_contact.stepping import parts_of
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
-
-FAST = 0.005
-"""Of the length scale: a way in one step beyond which other features may meet than are near."""
 
 ITERATIONS = 60
 """Of the solver in a step, at most; what hardly moves needs a few."""
@@ -48,28 +46,19 @@ HIT_ITERATIONS = 25
 HIT_ACCURACY = 1e-3
 """Of the speed of what hits: where the solver stops then."""
 
-KEPT_WAY = 0.02
-"""
-Of the length scale: the way points of a pair may pass each other on before contacts are found
-anew. Further on others meet than are known, and gaps are followed to first order only.
-"""
+PUSH_ITERATIONS = 15
+"""Of the solver to push overlaps out, at most; the rest is left to the next time."""
 
 OVERLAP = 3e-4
 """Of the length scale: overlap that is left; it keeps contacts closed."""
 
 TESTED_STEPS = 12
-"""Of so many steps one begins with a test whether all stands as it is, if it is slow."""
-
-QUIET_TIME = 0.25
-"""Time [s] all bodies must have been where they are to rest, times the root of their length."""
-
-QUIET_WAY = 2e-3
-"""Of the length scale: moves that do not count."""
+"""Of so many steps one begins with a test of who rests."""
 
 _NEVER = 1e9
 """What is asked for of points that are not there."""
 
-_PRESSED = 1e-200
+_PRESSED = 1e-50
 """Normal force that is none: the solver never lets it be zero."""
 
 
@@ -101,30 +90,28 @@ class Pile:
 
     def advance(self, state, start, duration):
         """
-        Take one step of `duration` [s] from time `start` [s], unless all stands still.
+        Take a step of `duration` [s] from time `start` [s].
 
-        Returns (closed contacts in columns of the island, resting) and puts the members' columns
-        into the `State`.
+        Returns (closed contacts in columns of the island, which members rest (m,) bool) and puts
+        the members' columns into the `State`.
         """
         island = self._island
         free = island.free_motion(state)
         scales = island.scales(free)
         motion = island.gather(state)
-        if self._steps % TESTED_STEPS == 0 and slow(island, scales, motion):
-            contacts = island.find_contacts(motion, 2 * OVERLAP * scales.length)
-            if stands(island, free, scales, motion, contacts):
+        resting = np.zeros(island.member_count, dtype=bool)
+        if self._steps % TESTED_STEPS == 0:
+            resting, contacts = resting_members(
+                island, self.quiet, motion, free, scales, start, 2 * OVERLAP * scales.length)
+            if resting.all():
                 island.scatter(motion.stopped(), state)
-                return contacts, True
+                return contacts, resting
         self._steps += 1
-        closing = duration * island.closing(motion)
-        if self.contacts is None or (self._way > KEPT_WAY * scales.length).any():
-            motion = self._renew(motion, free, scales, closing, duration)
-        self._way += closing
-        motion, closed = self._step(motion, free, scales, start, duration)
-        radius = island.bodies.bounding_radius[:island.member_count]
-        quiet = self.quiet.shortest(start + duration, motion, radius, QUIET_WAY * scales.length)
-        resting = quiet > QUIET_TIME * scales.length ** 0.5
-        island.scatter(motion.stopped() if resting else motion, state)
+        parts = parts_of(island, free, motion, duration)
+        for part in range(parts):
+            motion, closed = self._step(
+                motion, free, scales, start + part * duration / parts, duration / parts)
+        island.scatter(motion.stopped(resting), state)
         return closed, resting
 
     def impulses(self):
@@ -143,39 +130,14 @@ class Pile:
             self._sources = [self.impulses()]
             vector = self.contacts.vector
         self._way = np.zeros_like(closing)
-        found, arms = self._found(motion, free, scales, closing, duration)
+        found, arms = contacts_of_step(island, motion, free, scales, closing, duration)
         self.contacts = contacts = PileContacts(
             island.bodies, found, arms, motion.orientation, vector)
         self._forces = contacts.row_forces(self._remembered(found, MATCH * scales.length))
         allowed = OVERLAP * scales.length
-        if (contacts.gap < -2 * allowed).any():
+        if (contacts.gap < -3 * allowed).any():
             motion = self._pushed_out(motion, allowed)
         return motion
-
-    def _found(self, motion, free, scales, closing, duration):
-        """
-        Return the contacts near a `Motion`, points of a pair together, and their arms (2, 3, k).
-
-        Where it is fast they are looked for, besides, where the bodies would be after the step
-        without contact: what would overlap then meets in it, and is often not what is near now.
-        """
-        island = self._island
-        way = KEPT_WAY * scales.length
-        found = island.find_contacts(motion, way + 2 * closing)
-        arms = _arms(found, motion)
-        fast = closing > FAST * scales.length
-        if not fast.any():
-            return found, arms
-        kicked = free.kicked(motion, duration)
-        ahead = kicked.moved(slice(None), duration * kicked.linear, duration * kicked.angular)
-        later = island.find_contacts(ahead, np.where(fast, way, -np.inf))
-        later_arms = _arms(later, ahead)
-        # the gaps of now, as far as they change at the rates of then
-        later.separation -= duration * rotation.dot(later.normal, _across(
-            later, kicked, later_arms))
-        joined = Contacts.join([found, later])
-        order = np.argsort(joined.body_a * island.bodies.count + joined.body_b, kind='stable')
-        return joined.select(order), np.concatenate((arms, later_arms), axis=2)[:, :, order]
 
     def _remembered(self, found, reach):
         """Return impulses (3, k) in contact axes to start from."""
@@ -195,15 +157,20 @@ class Pile:
         rows[0] = contacts.gap + allowed
         force, _, _ = accelerated(
             contacts.rows.response, contacts.step, contacts.without_friction(),
-            contacts.row_motion(rows, _NEVER), np.zeros(3 * contacts.rows.count), 0.1 * allowed,
-            ITERATIONS)
+            contacts.row_motion(rows, _NEVER), np.zeros(3 * contacts.rows.count), 0.3 * allowed,
+            PUSH_ITERATIONS)
         contacts.gap = contacts.gap + contacts.motion(contacts.rows.response(force))[0]
         moved = contacts.velocities(contacts.rows.momentum(force))
         return motion.moved(np.arange(self._island.member_count), *moved)
 
     def _step(self, motion, free, scales, start, duration):
         """Return (motion, closed contacts) after a step of `duration` [s]."""
-        island, contacts = self._island, self.contacts
+        island = self._island
+        closing = duration * island.closing(motion)
+        if self.contacts is None or (self._way > KEPT_WAY * scales.length).any():
+            motion = self._renew(motion, free, scales, closing, duration)
+        self._way += closing
+        contacts = self.contacts
         rows = contacts.rows
         kicked = free.kicked(motion, duration)
         speed = contacts.motion(rows.motion(contacts.scaled(motion)))[0]
@@ -264,16 +231,3 @@ def dissipating(velocity, change):
     if 2.0 * along + size <= 0.0 or size == 0.0:
         return velocity + change
     return velocity + max(0.0, -2.0 * along / size) * change
-
-
-def _arms(contacts, motion):
-    """Return the arms (2, 3, k) [m] of contacts from the centres of their bodies."""
-    return np.stack([contacts.point - motion.position[:, body]
-                     for body in (contacts.body_a, contacts.body_b)])
-
-
-def _across(contacts, motion, arms):
-    """Return the velocities (3, k) [m/s] of b minus a at the ends of arms."""
-    velocity = [motion.linear[:, body] + rotation.cross(motion.angular[:, body], arm)
-                for body, arm in zip((contacts.body_a, contacts.body_b), arms)]
-    return velocity[1] - velocity[0]

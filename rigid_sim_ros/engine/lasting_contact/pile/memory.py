@@ -99,9 +99,9 @@ class Quiet:
         self._orientation[:, mine] = older._orientation[:, theirs]
         self._since[mine] = older._since[theirs]
 
-    def shortest(self, time, motion, radius, way):
+    def durations(self, time, motion, radius, way):
         """
-        Return for how long [s] at least all bodies have been where they are.
+        Return for how long [s] bodies have been where they are, (m,).
 
         That is to `way` [m], turning counted at the radius (m,) [m].
         """
@@ -115,4 +115,4 @@ class Quiet:
             self._position[:, moved] = position[:, moved]
             self._orientation[:, moved] = orientation[:, moved]
             self._since[moved] = time
-        return time - self._since.max()
+        return time - self._since

@@ -19,7 +19,7 @@ import numpy as np
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
 from rigid_sim_ros.engine.solvers.accelerated import Cones, largest_eigenvalue
-from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, POINTS
+from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, FEW_POINTS, MANY_PAIRS, POINTS
 from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
 
 DENSE = 500
@@ -134,7 +134,7 @@ class PileContacts:
         starts = np.flatnonzero(np.diff(keys, prepend=-1))
         sizes = np.diff(starts, append=len(keys))
         blocks, begin, low = [], 0, 0
-        for room in POINTS:
+        for room in POINTS if len(starts) >= MANY_PAIRS else FEW_POINTS:
             fits = np.flatnonzero((sizes > low) & (sizes <= room))
             low = room
             if not len(fits):
