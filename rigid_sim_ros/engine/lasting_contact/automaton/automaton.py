@@ -26,13 +26,13 @@ from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import Contact
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized
 
-TOLERANCE = 1e-9
+TOLERANCE = 1e-8
 """Of length, speed and angle: the error allowed in a step."""
 
 BALANCE = 1e-12
 """Of the acceleration scale: what is no more than the rounding of forces in balance."""
 
-LONGEST = 0.01
+LONGEST = 0.02
 """Longest step [s], times the root of the length in metres."""
 
 MOST_STEPS = 1000

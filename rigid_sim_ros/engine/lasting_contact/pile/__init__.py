@@ -79,14 +79,18 @@ class Pile:
         self._island = island
         self._sources = [pile.impulses() for pile in older if pile.contacts is not None]
         self.quiet = Quiet(island.members)
+        self.steps = 0
+        """Steps taken, also as part of older ones."""
+        self._vector = None
         for pile in older:
             self.quiet.take_over(pile.quiet)
+            self.steps = max(self.steps, pile.steps)
+            self._vector = pile.vector_for(island.members, self._vector)
         self.contacts = None
         """The `PileContacts` in use."""
         self._forces = None
         self._way = None
         """(p,) [m]: how far points of each pair may have passed each other since then."""
-        self._steps = 0
 
     def advance(self, state, start, duration):
         """
@@ -100,13 +104,13 @@ class Pile:
         scales = island.scales(free)
         motion = island.gather(state)
         resting = np.zeros(island.member_count, dtype=bool)
-        if self._steps % TESTED_STEPS == 0:
+        if self.steps % TESTED_STEPS == 0:
             resting, contacts = resting_members(
                 island, self.quiet, motion, free, scales, start, 2 * OVERLAP * scales.length)
             if resting.all():
                 island.scatter(motion.stopped(), state)
                 return contacts, resting
-        self._steps += 1
+        self.steps += 1
         parts = parts_of(island, free, motion, duration)
         for part in range(parts):
             motion, closed = self._step(
@@ -122,10 +126,18 @@ class Pile:
         count = self._island.world.bodies.count
         return columns[found.body_a] * count + columns[found.body_b], found.point, world
 
+    def vector_for(self, members, vector):
+        """Return the fastest motion for other members (m,), flat (6 (m + 1),); fills one given."""
+        vector = np.zeros(6 * (len(members) + 1)) if vector is None else vector
+        if self.contacts is not None:
+            _, theirs, mine = np.intersect1d(members, self._island.members, return_indices=True)
+            vector.reshape(-1, 6)[theirs] = self.contacts.vector.reshape(-1, 6)[mine]
+        return vector
+
     def _renew(self, motion, free, scales, closing, duration):
         """Find the contacts of a `Motion` and return it with overlaps pushed out."""
         island = self._island
-        vector = None
+        vector = self._vector
         if self.contacts is not None:
             self._sources = [self.impulses()]
             vector = self.contacts.vector
