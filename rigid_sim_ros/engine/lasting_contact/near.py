@@ -24,6 +24,13 @@ from rigid_sim_ros.engine.graph import connected
 from rigid_sim_ros.engine.solvers import canonical, contact_rows, ContactProblem, solve
 
 
+_FEW = 8
+"""Contacts of whose response no factor is needed."""
+
+_ROUNDING = 5e-16
+"""What a unit quaternion loses when it is put away and taken out again."""
+
+
 class Near:
     """
     The contacts (k) near a pose of an island's bodies; velocities do not matter for it.
@@ -73,9 +80,8 @@ class Near:
         return mixed_friction(friction[self.contacts.body_a], friction[self.contacts.body_b])
 
     def is_at(self, motion):
-        """Return whether these are the poses of a `Motion`, to the last bit."""
-        return (np.array_equal(self.position, motion.position)
-                and np.array_equal(self.orientation, motion.orientation))
+        """Return whether these are the poses of a `Motion`, but for rounding."""
+        return same_poses(self, motion)
 
     def across(self, motion):
         """Return the velocity [m/s] of b minus that of a at the contacts, (3, k), world axes."""
@@ -153,13 +159,30 @@ class Near:
             response = response[rows[:, None], rows]
         problem = ContactProblem(
             response, free[:, group].ravel(), self._friction[group], np.zeros(len(group)),
-            np.zeros((2, len(group))) if slip is None else slip[:, group])
+            np.zeros((2, len(group))) if slip is None else slip[:, group],
+            self._factor(group, rows))
         if guess is not None:
             guess = guess[:, group].ravel()
             guess = guess if guess.any() else None
         solution = solve(problem, guess)
         self.island.world.work.solver_iterations += solution.iterations
         return solution.force.reshape(3, -1)
+
+    def _factor(self, group, rows):
+        """Return the `factor` of the problem of contacts (l,) int with rows (3l,) int, or None."""
+        if len(group) <= _FEW:
+            return None
+        touched = self.rows.touched
+        bodies = {body for contact in group for body in self.body_pairs[contact]}
+        slots = np.flatnonzero(np.isin(touched, list(bodies)))
+        columns = (6 * slots[:, None] + np.arange(6)).ravel()
+        return self.rows.scaled[rows[:, None], columns]
+
+
+def same_poses(one, other):
+    """Return whether two with `position` and `orientation` are the same, but for rounding."""
+    return (np.array_equal(one.position, other.position)
+            and float(np.abs(one.orientation - other.orientation).max()) <= _ROUNDING)
 
 
 def memory_of(islands, pairs_a, pairs_b):

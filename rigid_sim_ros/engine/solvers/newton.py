@@ -20,20 +20,18 @@ above its floor and the friction inside its disc. The derivative of force less p
 
     by_force + by_motion @ response
 
-with both matrices block-diagonal, a contact's 3 x 3 each. They are made contact after contact in
-plain floats, which is three times faster than arrays for the few contacts this is meant for.
+with both matrices block-diagonal, a contact's 3 x 3 each.
 
 The inverse of one iteration is kept for the next as long as that gains three digits. The first
 guess is that all closed contacts stick, which one linear system tells. Once it is known who sticks
 and who slides, refining the compliance away (see `canonical`) takes a product each time.
 """
 
-from math import sqrt
-
 import numpy as np
 
 from rigid_sim_ros.engine.solvers import canonical
-from rigid_sim_ros.engine.solvers.contact_equations import linearise, places, sticking
+from rigid_sim_ros.engine.solvers.contact_equations import equations_of
+from rigid_sim_ros.engine.solvers.newton_systems import DenseSystem, FactoredSystem
 
 MAX_ITERATIONS = 20
 """From nothing 2 to 10 do; what has not converged by then mostly goes in circles."""
@@ -46,6 +44,9 @@ Lucidi 1986), which breaks many circles; to go down always would get stuck more 
 
 _GAIN = 1e-3
 """An inverse is kept while it shrinks the residual to this part or less."""
+
+_FACTORED = 1.7
+"""A response is taken in factors if it has so many times more rows than these have columns."""
 
 _STALLED = 0.5
 """A pass that changes the force by more than this part of what the last did gets nowhere."""
@@ -105,7 +106,7 @@ class Newton:
     def __init__(self, problem, compliance):
         """See the class."""
         self.iterations = 0
-        """Linear systems solved so far."""
+        """Linear systems made so far."""
         self._free = problem.free
         self._compliance = compliance
         count = self._count = problem.count
@@ -116,15 +117,14 @@ class Newton:
         self._matrix = problem.response.copy()
         diagonal = self._matrix.ravel()[::3 * count + 1]
         diagonal += compliance
-        stiffness = diagonal.reshape(3, count).tolist()
-        stiffness = [(n, max(t, u)) for n, t, u in zip(*stiffness)]
-        self._constants = [
-            (1 / n, 1 / t, *rest) for (n, t), *rest in zip(
-                stiffness, problem.friction.tolist(), problem.floor.tolist(),
-                *problem.slip.tolist())]
+        self._equations = equations_of(problem, diagonal.reshape(3, count))
+        factor = problem.factor
+        self._factor = None
+        if factor is not None and factor.shape[1] * _FACTORED <= 3 * count:
+            self._factor = factor
         # the rounding of matrix @ force is a floor below which no residual gets
-        self._rounding = 5e-16 * count ** 1.5 * max(map(max, stiffness))
-        self._inverse = self._by_motion = self._rows = None
+        self._rounding = 5e-16 * count ** 1.5 * float(diagonal.max())
+        self._system = self._rows = None
 
     def refined(self, guess, accuracy):
         """
@@ -164,12 +164,12 @@ class Newton:
         for _ in range(MAX_ITERATIONS):
             if size <= tolerance + self._rounding * float(np.abs(force).max()):
                 # the last digits, unseen
-                return force if self._inverse is None else force - self._inverse @ residual
-            if (self._inverse is None or sizes and size > _GAIN * sizes[-1]) and (
-                    not self._invert(self._rows)):
+                return force if self._system is None else force - self._system.solve(residual)
+            if (self._system is None or sizes and size > _GAIN * sizes[-1]) and (
+                    not self._prepare(self._rows)):
                 return None
             sizes.append(size)
-            change = self._inverse @ residual
+            change = self._system.solve(residual)
             largest = max(sizes[-_WINDOW:])
             for _ in range(_HALVINGS):
                 residual, size = self._evaluate(free, force - change)
@@ -181,17 +181,8 @@ class Newton:
 
     def _evaluate(self, free, force):
         """Return the residual (3k,) of a force, and its size in units of motion."""
-        count = self._count
-        forces, motions = force.tolist(), (free + self._matrix @ force).tolist()
-        rows, size = [], 0.0
-        for contact, constants in enumerate(self._constants):
-            row = linearise(forces[contact::count], motions[contact::count], constants)
-            rows.append(row)
-            normal, first, second = row[0] / constants[0], row[1] / constants[1], (
-                row[2] / constants[1])
-            size += normal * normal + first * first + second * second
-        self._rows = rows
-        return np.array([row[:3] for row in rows]).T.ravel(), sqrt(size)
+        self._rows, residual, size = self._equations.evaluate(force, free + self._matrix @ force)
+        return residual, size
 
     def _extrapolated(self, force, change, tolerance):
         """
@@ -204,11 +195,11 @@ class Newton:
         is all that can be done.
         """
         reference = force
-        if self._inverse is None and not self._invert(self._rows):
+        if self._system is None and not self._prepare(self._rows):
             return reference, force, False
         size = float(np.abs(change).max())
         for _ in range(canonical.MAX_PASSES):
-            change = self._inverse @ (self._by_motion @ (self._compliance * change))
+            change = self._system.solve(self._system.of_motion(self._compliance * change))
             reference, force = force, force + change
             before, size = size, float(np.abs(change).max())
             if self._compliance * size <= tolerance:
@@ -222,24 +213,19 @@ class Newton:
         motion = self._free
         if self.floor.any():
             motion = motion + self._matrix @ self.floor - self._compliance * self.floor
-        rows = [sticking(*each) for each in zip(
-            motion.reshape(3, -1).T.tolist(), self._constants)]
-        if not self._invert(rows):
+        rows = self._equations.sticking(motion)
+        if not self._prepare(rows):
             return self.floor
-        return self.floor - self._inverse @ np.array([row[:3] for row in rows]).T.ravel()
+        return self.floor - self._system.solve(rows[:3].ravel())
 
-    def _invert(self, rows):
-        """Invert the derivative in which contacts have these rows; return whether it could be."""
-        count = self._count
-        motion_places, force_places = places(count)
-        slopes = np.array(rows).T
-        self._by_motion = np.zeros((3 * count, 3 * count))
-        by_force = np.zeros((3 * count, 3 * count))
-        self._by_motion.ravel()[motion_places] = slopes[3:8]
-        by_force.ravel()[force_places] = slopes[8:]
+    def _prepare(self, rows):
+        """Make the linear system in which contacts have these rows; return whether it could be."""
         self.iterations += 1
         try:
-            self._inverse = np.linalg.inv(self._by_motion @ self._matrix + by_force)
+            if self._factor is None:
+                self._system = DenseSystem(rows, self._matrix)
+            else:
+                self._system = FactoredSystem(rows, self._factor, self._compliance)
         except np.linalg.LinAlgError:
             return False
         return True

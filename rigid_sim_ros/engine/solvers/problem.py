@@ -54,6 +54,9 @@ class ContactProblem:
     Friction is then -friction force_n slip.
     """
 
+    factor: np.ndarray = None
+    """(3k, n) or None: the response is factor @ factor.T; of use where n is small."""
+
     @property
     def count(self):
         """Count of contacts."""
