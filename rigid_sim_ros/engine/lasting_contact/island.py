@@ -31,6 +31,10 @@ from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
 
 
+SLENDER = 3.0
+"""Ratio of extents above which it pays to tell the axes apart about which a body turns."""
+
+
 class Island:
     """
     What stays the same about an island while its members and pairs are the same.
@@ -57,6 +61,12 @@ class Island:
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
+        radius, extents = self.bodies.bounding_radius, self.bodies.half_extents
+        self._radius = np.where(np.isfinite(radius), radius, 0.0)
+        self._arms = None
+        """(3, n) [m]: how far points are from each axis of a body, if that differs much."""
+        if (extents.max(axis=0) > SLENDER * extents.min(axis=0)).any():
+            self._arms = np.stack([np.hypot(extents[i - 1], extents[i - 2]) for i in range(3)])
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
         self.impulses = memory_of(older, pairs_a, pairs_b)
@@ -112,18 +122,23 @@ class Island:
 
     def reach(self, free, motion, duration):
         """Return how far [m] any point of the bodies (n,) comes in a time [s] without impacts."""
-        radius = self.bodies.bounding_radius
-        radius = np.where(np.isfinite(radius), radius, 0.0)
-        return duration * (_length(motion.linear) + radius * _length(motion.angular)
+        return duration * (_length(motion.linear) + self._turning(motion)
                            + duration * _length(free.acceleration))
 
     def closing(self, motion):
         """Return bounds (p,) of how fast [m/s] the points of pairs approach or pass each other."""
         a, b = self.pairs.pairs_a, self.pairs.pairs_b
-        radius = self.bodies.bounding_radius
-        turning = np.where(np.isfinite(radius), radius, 0.0) * _length(motion.angular)
-        linear = motion.linear
+        turning, linear = self._turning(motion), motion.linear
         return _length(linear[:, b] - linear[:, a]) + turning[a] + turning[b]
+
+    def _turning(self, motion):
+        """Return bounds (n,) of how fast [m/s] points move about the centre of their body."""
+        if self._arms is None:
+            return self._radius * _length(motion.angular)
+        # about each axis of the body, so that a rod may spin fast about its own
+        rates = rotation.transform_transposed(
+            rotation.matrix(motion.orientation), motion.angular)
+        return (np.abs(rates) * self._arms).sum(axis=0)
 
     def find_contacts(self, motion, margin):
         """Return the contacts (own columns) with gaps below a margin [m]."""

@@ -16,6 +16,7 @@
 
 import numpy as np
 
+from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact import cut, scales as units
 from rigid_sim_ros.engine.lasting_contact.rest import at_rest
 from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits, push_out, second_half
@@ -90,8 +91,11 @@ def parts_of(island, free, motion, duration):
     """Return how many parts a step needs so that nothing passes half of what is thinnest."""
     extents = island.bodies.half_extents
     # nothing passes through a plane unseen: it has no other side
-    thickness = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
-    reach = island.reach(free, motion, duration)
+    half = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
     a, b = island.pairs.pairs_a, island.pairs.pairs_b
-    needed = (reach[a] + reach[b]) / np.minimum(thickness[a], thickness[b])
-    return int(min(max(1.0, np.ceil(needed.max(initial=0.0))), _MOST_PARTS))
+    thickness = np.where(np.isinf(half[a]) | np.isinf(half[b]), np.inf,
+                         np.minimum(half[a], half[b]))
+    pull = 2 * np.sqrt(rotation.dot(free.acceleration, free.acceleration).max())
+    way = duration * (island.closing(motion) + duration * pull)
+    needed = (way / thickness).max(initial=0.0)
+    return int(min(max(1.0, np.ceil(needed)), _MOST_PARTS))

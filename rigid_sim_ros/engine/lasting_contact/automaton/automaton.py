@@ -35,6 +35,11 @@ BALANCE = 1e-12
 LONGEST = 0.02
 """Longest step [s], times the root of the length in metres."""
 
+LANDED = 1e-12
+"""Of the length scale: how near to the plane a point is that touches it."""
+
+_CORRECTIONS = 5
+
 MOST_STEPS = 1000
 """In one call; more are not worth it."""
 
@@ -103,15 +108,32 @@ class Automaton(ContactState):
                 size *= max(0.2, 0.9 * error ** -0.2)
                 continue
             following = min(size * (4.0 if error < 1e-4 else 0.9 * error ** -0.2), self._longest)
-            time, event, too_long = events.first(self, started, step)
+            time, event, point, too_long = events.first(self, started, step)
             if too_long and self.steps <= MOST_STEPS:
                 size *= 0.5
                 continue
             if event is None:
                 return step, None, following
             if time < size:
-                step = Step(self.rates, self.state, rates, time)
+                step = self._step_to(rates, time, size, point)
             return step, event, following
+
+    def _step_to(self, rates, time, size, point):
+        """
+        Return the step to the time [s] of an event within a step of `size` [s].
+
+        If it is that a point touches, the time is corrected until the point does.
+        """
+        for _ in range(_CORRECTIONS):
+            step = Step(self.rates, self.state, rates, time)
+            if point is None:
+                break
+            gap = self.body.gaps(step.end)[point] - self.level(point)
+            speed = events.velocity_of(self.body, step.end, point)[2]
+            if abs(gap) <= LANDED * self.scales.length or speed >= 0.0:
+                break
+            time = min(max(time - gap / speed, 0.5 * time), 0.5 * (time + size))
+        return step
 
     def settle(self):
         """Stop what slides slowly: sliding has ended."""

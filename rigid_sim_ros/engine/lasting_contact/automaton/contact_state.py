@@ -210,6 +210,8 @@ class ContactState:
         gaps = self.body.gaps(self.state)
         points = [point for point in self.body.points
                   if gaps[point] < TOUCH * self.scales.length or point in self.closed]
+        if not points:
+            return
         self._impacts += 1
         if self._impacts > MANY_IMPACTS:
             self._slip = max(self._slip, self._stick)

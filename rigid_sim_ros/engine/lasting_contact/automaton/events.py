@@ -33,11 +33,12 @@ _ROUNDING = 1e-15
 
 def first(automaton, started, step):
     """
-    Return (time [s], event or None, too_long) of what happens first in a `Step`.
+    Return (time [s], event or None, point or None, too_long): what happens first in a `Step`.
 
-    The event is a method of the automaton, to be called in the state at that time. `too_long` says
-    that the step must be shortened before anything can be said. `started` is what the automaton
-    had solved at the start of the step.
+    The event is a method of the automaton, to be called in the state at that time; the point is
+    the one that touches, if that is the event. The time is as good as the interpolant. `too_long`
+    says that the step must be shortened before anything can be said. `started` is what the
+    automaton had solved at the start of the step.
     """
     found = []
     between = None
@@ -46,26 +47,26 @@ def first(automaton, started, step):
         level = automaton.level(point)
         found.append((_crossing(
             lambda time, point=point: automaton.body.gaps(between(time))[point] - level, end),
-            automaton.land))
+            automaton.land, point))
     for which, point, direction in _stopping(automaton, started):
         if direction is None:
-            return step.size, None, True
+            return step.size, None, None, True
         velocity = automaton.solved[1][which]
         if dot((*direction, 0.0), velocity) > 0.0:
-            found.append((step.size, automaton.settle))
+            found.append((step.size, automaton.settle, None))
             continue
         between = between or step.interpolant()
 
         def along(time, point=point, direction=direction):
-            return dot((*direction, 0.0), _velocity(automaton.body, between(time), point))
+            return dot((*direction, 0.0), velocity_of(automaton.body, between(time), point))
 
         time = _crossing(along, step.size)
-        x, y, _ = _velocity(automaton.body, between(time), point)
+        x, y, _ = velocity_of(automaton.body, between(time), point)
         if not automaton.slow(hypot(x, y)):
-            return step.size, None, True
-        found.append((time, automaton.settle))
+            return step.size, None, None, True
+        found.append((time, automaton.settle, None))
     if not found:
-        return step.size, None, False
+        return step.size, None, None, False
     return (*min(found, key=lambda each: each[0]), False)
 
 
@@ -97,8 +98,8 @@ def _touching(automaton, step):
 
 def _lowest(body, step, point, before, after):
     """Return when in a step a point that falls and rises is lowest [s], or None."""
-    falling = _velocity(body, step.start, point)[2]
-    rising = _velocity(body, step.end, point)[2]
+    falling = velocity_of(body, step.start, point)[2]
+    rising = velocity_of(body, step.end, point)[2]
     if falling >= 0.0 or rising <= 0.0:
         return None
     # the height is nearly a parabola, so its rate is nearly linear
@@ -126,7 +127,7 @@ def _stopping(automaton, started):
     return found
 
 
-def _velocity(body, state, point):
+def velocity_of(body, state, point):
     """Return the velocity (3,) [m/s] of a point."""
     return body.velocities(state, body.arms(body.turn(state), (point,)))[0]
 
