@@ -23,7 +23,7 @@ from rigid_sim_ros.engine.lasting_contact.automaton import OnPlane, plane_of
 from rigid_sim_ros.engine.lasting_contact.pile import Pile
 from rigid_sim_ros.engine.lasting_contact.stepping import advance_in_steps
 
-FEW = 3
+FEW = 6
 """Bodies that are stepped to second order; more are a pile."""
 
 

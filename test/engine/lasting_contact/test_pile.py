@@ -62,10 +62,24 @@ def test_aligned_tower_stands_still():
 
 def test_offset_tower_stands():
     """Shifted by up to a tenth of an edge: it stands, and hardly creeps."""
-    run = tower(6, offset=0.02)
+    run = tower(8, offset=0.02)
     start = run.state.position.copy()
     assert run.run_to_rest(1.0) is not None
     assert np.abs(run.state.position - start).max() < 2e-4
+
+
+def test_a_light_cube_between_heavy_ones():
+    """Mass ratios of a thousand, hit from above: hardly any overlap, all at rest."""
+    run = IslandRun([body('low', Cube(0.2), 100.0, position=(0, 0, 0.1)),
+                     body('light', Cube(0.2), 0.1, position=(0, 0, 0.3)),
+                     body('high', Cube(0.2), 100.0, position=(0, 0, 0.5)),
+                     body('hit', Cube(0.2), 10.0, position=(0.02, 0.03, 0.7))],
+                    restitution=0.0, friction=0.5)
+    deepest = 0.0
+    while run.time < 2.0 and not run.step().resting.all():
+        deepest = max(deepest, diagnostics.penetration(run.world.bodies, run.state))
+    assert run.time < 2.0
+    assert deepest < 1e-6
 
 
 @pytest.mark.parametrize('restitution', [0.0, 0.5])
@@ -102,15 +116,15 @@ def test_contact_forces_keep_momenta():
 
 
 def test_sliding_row_loses_what_friction_takes():
-    """Four touching cubes slide as one: v^2 / (2 mu g), to first order in the step."""
+    """Eight touching cubes slide as one: v^2 / (2 mu g), to first order in the step."""
     run = IslandRun([body(f'c{i}', Cube(0.2), position=(0.2 * i, 0, 0.1), velocity=(2, 0, 0))
-                     for i in range(4)], friction=0.4)
+                     for i in range(8)], friction=0.4)
     start = run.state.position.copy()
     run.run(0.6)
-    way = (run.state.position - start)[0, :4]
+    way = (run.state.position - start)[0, :8]
     np.testing.assert_allclose(way, 4 / (2 * 0.4 * GRAVITY), rtol=1e-2)
     assert np.ptp(way) < 1e-3
-    assert np.abs(run.state.position[2, :4] - 0.1).max() < 1e-4
+    assert np.abs(run.state.position[2, :8] - 0.1).max() < 1e-4
 
 
 def test_many_balls_roll_on_a_pushed_plate():
