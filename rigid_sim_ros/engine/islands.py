@@ -235,7 +235,7 @@ def _with_the_many(labels, members):
 
 
 def _groups(island, contacts):
-    """Return the first of the members (m,) that each member of an island touches, by way of any."""
+    """Return the first of the members (m,) each member touches, by way of any."""
     count = island.member_count
     a, b = contacts.body_a, contacts.body_b
     both = (a < count) & (b < count)

@@ -25,8 +25,8 @@ ALL_PAIRS = 4096
 
 FILLING = 0.25
 """
-Radius of the spheres around the paths at which the horizon ends, in mean distances of neighbours:
-a body then has a neighbour whose path may cross its own every second time.
+Radius of the spheres around the paths at which the horizon ends, in mean distances of
+neighbours: a body then has a neighbour whose path may cross its own every second time.
 """
 
 LONGEST_HORIZON = 1e9
