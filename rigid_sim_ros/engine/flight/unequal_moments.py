@@ -45,6 +45,9 @@ A hundred times more would make strides a quarter longer.
 LONGEST = 8.0
 """Longest stride, in the body's unit of time, for series that happen to vanish."""
 
+TINIEST = 1e-300
+"""Added to squares that may underflow, so that bounds hold for the smallest numbers too."""
+
 START, FRAME, MOMENTS, MAGNITUDE, RATE, TORQUE = (
     0, slice(1, 5), slice(5, 8), 8, slice(9, 12), slice(12, 15))
 """A body's constants: start [s]; frame; moments; torque along the frame's z; rate, body axes;
@@ -230,13 +233,13 @@ def _rate_bounds(moments, rate, torque, start, end):
     # momentum and torque in the body's axes at the start: the directions do not matter here
     momentum = moments * rate
     square = np.maximum(_square(momentum + torque * start), _square(momentum + torque * end))
-    push = _square(torque)
+    push = _square(torque) + TINIEST
     nearest = np.clip(-(momentum * torque).sum(axis=0) / push, start, end)
     smallest = _square(momentum + torque * nearest)
     energy = (np.sqrt((momentum * rate).sum(axis=0)) + np.sqrt(push * most) * end) ** 2
     least_bound = np.minimum(np.minimum(most * most * square, most * energy),
                              (most + least) * energy - most * least * smallest)
-    return np.where(for_ever, np.inf, np.sqrt(least_bound))
+    return np.where(for_ever, np.inf, np.sqrt(least_bound + TINIEST))
 
 
 def _square(vector):

@@ -14,7 +14,7 @@
 
 """Bounds of rates and accelerations hold on every flight, and are not wastefully wide."""
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies
 import numpy as np
 import pytest
@@ -43,6 +43,7 @@ def flight(moments, rate, torque, scale):
 @settings(max_examples=100, deadline=None)
 @given(MOMENTS, VECTORS, VECTORS, strategies.sampled_from((1e-3, 1.0, 5.0)),
        strategies.booleans(), strategies.floats(0.0, 2.0), strategies.floats(0.01, 2.0))
+@example((0.01, 0.01, 0.5), (0.0, 0.0, 0.0), (0.0, 0.0, 2e-302), 1e-3, True, 0.0, 1.0)
 def test_no_rate_and_no_acceleration_exceeds_its_bound(
         moments, rate, torque, scale, driven, begin, duration):
     flights = flight(moments, rate, torque if driven else (0.0, 0.0, 0.0), scale)
