@@ -30,7 +30,7 @@ neighbours: a body then has a neighbour whose path may cross its own every secon
 """
 
 LONGEST_HORIZON = 1e9
-"""[s]: the horizon of bodies that do not move relative to each other, where a product is finite."""
+"""[s]: the horizon of bodies that do not move relative to each other; times speed, finite."""
 
 LEAST_GROWTH = 0.1
 """These spheres grow by at least this part of the bodies' radius: crowds need a horizon too."""
