@@ -55,6 +55,11 @@ class Encounters:
         """(p,) [s]: the pair does not touch before; its touch itself where `found`."""
         self.found = self._guarded = np.zeros(0, dtype=bool)
 
+    @property
+    def active(self):
+        """Whether any body is in flight."""
+        return bool(self._flying.any())
+
     # -- what the method tells -----------------------------------------------------------------
 
     def fly(self, indices, time, guarded=None):

@@ -65,6 +65,9 @@ class Exact:
     def advance(self, duration):
         """Advance by `duration` [s]: flights from touch to touch, islands in steps."""
         end = self.time + duration
+        if not self._islands.active and not self._encounters.active:
+            # everything rests: what has been read of it stays true
+            self.time = end
         while self.time < end:
             if self._islands.active:
                 self._step_islands(self._islands.step_end(self.time, end))

@@ -1,0 +1,129 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Sleep and waking: who rests is skipped, and goes on when something is done to it or near it."""
+
+import numpy as np
+import pytest
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
+from rigid_sim_ros.engine.shapes import Cube
+
+EDGE = 0.2
+GROUND = Plane('ground', (0.0, 0.0, 1.0), 0.0)
+STEP = 0.01
+
+
+def cube(name, x, z=EDGE / 2, **values):
+    """Return a cube of 1 kg that stands at x [m]."""
+    shape = Cube(EDGE)
+    return Body(name, shape, 1.0, shape.inertia(1.0), position=(x, 0.0, z),
+                material=Material(restitution=0.0, friction=0.5), **values)
+
+
+def asleep(*bodies):
+    """Return a simulation of bodies on the ground that all rest."""
+    simulation = Simulation(Scene(bodies=bodies, planes=(GROUND,)))
+    for _ in range(100):
+        simulation.advance(STEP)
+        if simulation.asleep.all():
+            return simulation
+    pytest.fail(f'awake after {simulation.time} s: {simulation.asleep}')
+
+
+def tower(x, count, name):
+    """Return cubes on each other."""
+    return [cube(f'{name}{row}', x, (row + 0.5) * EDGE) for row in range(count)]
+
+
+def test_nothing_is_done_for_those_who_rest():
+    simulation = asleep(*tower(0.0, 3, 'a'), *(cube(f'b{row}', 1.0 + row) for row in range(20)))
+    position = simulation.position.copy()
+    work = vars(simulation.work).copy()
+    for _ in range(100):
+        simulation.advance(STEP)
+        np.testing.assert_array_equal(simulation.position, position)
+    assert vars(simulation.work) == work
+
+
+def test_one_that_is_pushed_moves_and_its_tower_with_it_but_no_other():
+    simulation = asleep(*tower(0.0, 3, 'a'), *tower(2.0, 2, 'b'))
+    # the lowest of three slides under the others: mu g (3 m + 2 m) holds it at least
+    simulation.apply_wrench('a0', force=(40.0, 0.0, 0.0))
+    simulation.advance(STEP)
+    assert simulation.asleep.tolist() == [False, False, False, True, True]
+    assert simulation.linear_velocity[0, 0] > 0.0
+
+
+def test_a_push_that_friction_holds_ends_in_sleep_again():
+    simulation = asleep(cube('a', 0.0))
+    simulation.apply_wrench('a', force=(4.0, 0.0, 0.0))
+    for _ in range(20):
+        simulation.advance(STEP)
+    assert simulation.asleep.all()
+    assert simulation.position[0, 0] == pytest.approx(0.0, abs=1e-12)
+    simulation.apply_wrench('a', force=(6.0, 0.0, 0.0))
+    simulation.advance(0.5)
+    # mu m g = 4.905 N
+    assert simulation.position[0, 0] == pytest.approx((6.0 - 4.905) * 0.5 ** 2 / 2, rel=1e-6)
+
+
+def test_what_is_hit_wakes_and_what_is_not_sleeps_on():
+    simulation = asleep(cube('a', 0.0), cube('b', 5.0))
+    simulation.add(cube('bullet', -1.0, velocity=(4.0, 0.0, 0.0), z=0.15))
+    states = []
+    while simulation.time < 1.5:
+        simulation.advance(STEP)
+        states.append(simulation.asleep.tolist())
+    assert [True, True, False] in states, 'the one that is not hit yet still sleeps'
+    assert [False, True, False] in states
+    assert simulation.position[0, 0] > 0.05
+    assert simulation.position[1].tolist() == [5.0, 0.0, simulation.position[1, 2]]
+    assert all(state[1] for state in states[10:])
+
+
+def test_those_whose_support_is_taken_away_fall():
+    simulation = asleep(*tower(0.0, 3, 'a'))
+    simulation.remove('a0')
+    simulation.advance(0.1)
+    fall = 9.81 * 0.1 ** 2 / 2
+    assert simulation.position[:, 2].tolist() == pytest.approx(
+        [1.5 * EDGE - fall, 2.5 * EDGE - fall], abs=1e-6)
+
+
+def test_one_that_is_pulled_from_below_another_lets_it_fall():
+    simulation = asleep(*tower(0.0, 2, 'a'))
+    simulation.set_pose('a0', position=(1.0, 0.0, EDGE / 2))
+    simulation.advance(0.1)
+    assert simulation.position[1, 2] == pytest.approx(
+        1.5 * EDGE - 9.81 * 0.1 ** 2 / 2, abs=1e-6)
+
+
+def test_one_balanced_on_an_edge_only_rests_if_it_is_balanced():
+    shape = Cube(EDGE)
+    angle = 0.01
+
+    def tilted(turn):
+        half = np.pi / 8 + turn / 2
+        height = EDGE / np.sqrt(2) * np.cos(turn)
+        return Body('a', shape, 1.0, shape.inertia(1.0), position=(0.0, 0.0, height),
+                    orientation=(0.0, np.sin(half), 0.0, np.cos(half)),
+                    material=Material(restitution=0.0, friction=0.9))
+
+    simulation = Simulation(Scene(bodies=(tilted(angle),), planes=(GROUND,)))
+    for _ in range(300):
+        simulation.advance(STEP)
+        if simulation.asleep.all():
+            break
+    assert simulation.position[0, 2] == pytest.approx(EDGE / 2, abs=1e-9), 'it lies on a face'
