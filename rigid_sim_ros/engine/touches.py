@@ -118,9 +118,17 @@ class Touches:
 
     def _apply(self, time, contacts, stays):
         """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
-        world = self._world
-        threshold = stick_speed(world.bodies, self._flights.acceleration, self._angular,
+        threshold = stick_speed(self._world.bodies, self._flights.acceleration, self._angular,
                                 contacts)
+        if self._parting_speed(contacts).min() < 0.0:
+            self._strike(time, contacts, threshold)
+        lasting = self._parting_speed(contacts) <= threshold
+        stays[contacts.body_a[lasting]] = True
+        stays[contacts.body_b[lasting]] = True
+
+    def _strike(self, time, contacts, threshold):
+        """Apply the impulses of contacts, and note those faster than a threshold [m/s]."""
+        world = self._world
         impact = resolve_impact(world.bodies, contacts, self._position, self._orientation,
                                 self._linear, self._angular, world.impact_law, threshold)
         self._linear[:, impact.touched] += impact.linear
@@ -130,9 +138,6 @@ class Touches:
             world.events.append(
                 time, contacts.body_a[row], contacts.body_b[row], IMPACT, contacts.point[:, row],
                 contacts.normal[:, row], impact.impulse[:, row], impact.speed[row])
-        lasting = self._parting_speed(contacts) <= threshold
-        stays[contacts.body_a[lasting]] = True
-        stays[contacts.body_b[lasting]] = True
 
     def _parting_speed(self, contacts):
         """Return the speeds (k,) [m/s] at which contact points part along their normals."""
