@@ -21,10 +21,10 @@ contact points they have room for. The Jacobian is scaled by M^-1/2, so that mas
 
 import numpy as np
 
-POINTS = (1, 2, 4, 8, 16)
+POINTS = (1, 2, 4, 8, 16, 32)
 """Contact points a block has room for: a pair goes where it fits."""
 
-FEW_POINTS = (4, 16)
+FEW_POINTS = (4, 16, 32)
 """The same for fewer than `MANY_PAIRS`: empty rows cost less than more blocks."""
 
 MANY_PAIRS = 500

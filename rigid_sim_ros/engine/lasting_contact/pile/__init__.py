@@ -15,36 +15,27 @@
 """
 Steps of piles: islands of many bodies, of first order, with an iterative solver.
 
-A step is semi-implicit: velocities by forces and contact impulses, poses by the new velocities,
-overlaps pushed out apart from that. Contacts are found anew when something has moved enough; until
-then their gaps are followed along. Contacts ask u_n >= -gap / h, so that they close softly within
-a step, or u_n >= e u if they approach faster than a limit and close in it. Redundant forces are
+A step is semi-implicit: velocities by forces and contact impulses, poses by the new velocities.
+Contacts are found anew when something has moved enough; until then their gaps are followed along.
+Contacts ask u_n >= -gap / h, so that they close in the step. What hits turns and may run into
+things by other features than were near: where a step ends with an overlap, the features that
+overlap are added, as they are there, and the step is taken again (Newton's method on the poses at
+the end). What approached faster than a limit rebounds at the end of the step. Overlaps that are
+left are pushed out apart from that. Nothing of it adds energy, see `energy`. Redundant forces are
 shared out as the solver comes upon them, which is not the canonical choice of small islands.
 """
 
 import numpy as np
 
-from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
-from rigid_sim_ros.engine.lasting_contact.motion import Motion
-from rigid_sim_ros.engine.lasting_contact.pile.finding import contacts_of_step, KEPT_WAY
+from rigid_sim_ros.engine.lasting_contact.near import same_poses
+from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_WAY, run_into
 from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
+from rigid_sim_ros.engine.lasting_contact.pile.pile_step import NEVER, PileStep
 from rigid_sim_ros.engine.lasting_contact.stepping import parts_of
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
-
-ITERATIONS = 60
-"""Of the solver in a step, at most; what hardly moves needs a few."""
-
-ACCURACY = 1e-5
-"""Of what the acceleration scale does to velocities in a step: where the solver stops."""
-
-HIT_ITERATIONS = 25
-"""Of the solver in a step in which something hits; twice as many leave a third less overlap."""
-
-HIT_ACCURACY = 1e-3
-"""Of the speed of what hits: where the solver stops then."""
 
 PUSH_ITERATIONS = 15
 """Of the solver to push overlaps out, at most; the rest is left to the next time."""
@@ -52,14 +43,20 @@ PUSH_ITERATIONS = 15
 OVERLAP = 3e-4
 """Of the length scale: overlap that is left; it keeps contacts closed."""
 
+TRIES = 4
+"""
+Of a step, at most, each with what those before ran into: eight points of a pair each, and
+`solvers.blocks` has room for 32.
+"""
+
+DEEP = 0.02
+"""
+Of the length scale: overlap that is pushed out whatever energy that takes; steps leave less, so
+somebody else has made it.
+"""
+
 TESTED_STEPS = 12
 """Of so many steps one begins with a test of who rests."""
-
-_NEVER = 1e9
-"""What is asked for of points that are not there."""
-
-_PRESSED = 1e-50
-"""Normal force that is none: the solver never lets it be zero."""
 
 
 class Pile:
@@ -91,6 +88,11 @@ class Pile:
         self._forces = None
         self._way = None
         """(p,) [m]: how far points of each pair may have passed each other since then."""
+        self._ahead = None
+        """The `Motion` at the end of the last step and what was `Found` there, or None."""
+        self._lost = sum(pile._lost for pile in older
+                         if np.isin(pile._island.members, island.members).any())
+        """Energy [J] that the last step has lost."""
 
     def advance(self, state, start, duration):
         """
@@ -134,91 +136,89 @@ class Pile:
             vector.reshape(-1, 6)[theirs] = self.contacts.vector.reshape(-1, 6)[mine]
         return vector
 
-    def _renew(self, motion, free, scales, closing, duration):
+    def _renew(self, motion, free, scales, duration):
         """Find the contacts of a `Motion` and return it with overlaps pushed out."""
         island = self._island
         vector = self._vector
         if self.contacts is not None:
             self._sources = [self.impulses()]
             vector = self.contacts.vector
-        self._way = np.zeros_like(closing)
-        found, arms = contacts_of_step(island, motion, free, scales, closing, duration)
-        self.contacts = contacts = PileContacts(
-            island.bodies, found, arms, motion.orientation, vector)
-        self._forces = contacts.row_forces(self._remembered(found, MATCH * scales.length))
+        if self._ahead is not None and same_poses(self._ahead[0], motion):
+            found = self._ahead[1]
+        else:
+            found = self._found(motion, scales, duration * island.closing(motion))
+        self._way = np.zeros(len(island.pairs.pairs_a))
+        self.contacts = contacts = PileContacts(island.bodies, found, motion.orientation, vector)
+        self._forces = contacts.row_forces(
+            self._remembered(found.contacts, MATCH * scales.length))
         allowed = OVERLAP * scales.length
         if (contacts.gap < -3 * allowed).any():
-            motion = self._pushed_out(motion, allowed)
+            motion = self._pushed_out(motion, free, allowed, DEEP * scales.length)
         return motion
 
-    def _remembered(self, found, reach):
+    def _found(self, motion, scales, way):
+        """Return what is `Found` near a `Motion` whose pairs go a way (p,) [m] in a step."""
+        return Found.at(self._island.find_contacts(
+            motion, KEPT_WAY * scales.length + 2 * way), motion)
+
+    def _remembered(self, contacts, reach):
         """Return impulses (3, k) in contact axes to start from."""
         columns, count = self._island.columns, self._island.world.bodies.count
-        keys = columns[found.body_a] * count + columns[found.body_b]
-        world = np.zeros((3, found.count))
+        keys = columns[contacts.body_a] * count + columns[contacts.body_b]
+        world = np.zeros((3, contacts.count))
         for source in self._sources:
             if len(source[0]):
-                world += Impulses(*source).at(keys, found.point, reach)
+                world += Impulses(*source).at(keys, contacts.point, reach)
         axes = self.contacts.axes
         return axes[:, 0] * world[0] + axes[:, 1] * world[1] + axes[:, 2] * world[2]
 
-    def _pushed_out(self, motion, allowed):
-        """Return the motion with overlaps of more than `allowed` [m] undone, nearly."""
-        contacts = self.contacts
+    def _pushed_out(self, motion, free, allowed, deep):
+        """
+        Return the motion with overlaps of more than `allowed` [m] undone, nearly.
+
+        As far as the energy goes that the step before has lost, but for `deep` ones.
+        """
+        contacts, island = self.contacts, self._island
         rows = np.zeros((3, len(contacts.gap)))
         rows[0] = contacts.gap + allowed
         force, _, _ = accelerated(
             contacts.rows.response, contacts.step, contacts.without_friction(),
-            contacts.row_motion(rows, _NEVER), np.zeros(3 * contacts.rows.count), 0.3 * allowed,
+            contacts.row_motion(rows, NEVER), np.zeros(3 * contacts.rows.count), 0.3 * allowed,
             PUSH_ITERATIONS)
-        contacts.gap = contacts.gap + contacts.motion(contacts.rows.response(force))[0]
-        moved = contacts.velocities(contacts.rows.momentum(force))
-        return motion.moved(np.arange(self._island.member_count), *moved)
+        count = island.member_count
+        linear, angular = contacts.velocities(contacts.rows.momentum(force))
+        raised = -((free.acceleration[:, :count] * linear).sum(axis=0)
+                   / island.bodies.inverse_mass[:count]).sum()
+        part = 1.0
+        if raised > self._lost and contacts.gap.min() > -deep:
+            part = self._lost / raised
+        contacts.gap = contacts.gap + part * contacts.motion(contacts.rows.response(force))[0]
+        return motion.moved(np.arange(count), part * linear, part * angular)
 
     def _step(self, motion, free, scales, start, duration):
         """Return (motion, closed contacts) after a step of `duration` [s]."""
-        island = self._island
-        closing = duration * island.closing(motion)
         if self.contacts is None or (self._way > KEPT_WAY * scales.length).any():
-            motion = self._renew(motion, free, scales, closing, duration)
-        self._way += closing
-        contacts = self.contacts
-        rows = contacts.rows
-        kicked = free.kicked(motion, duration)
-        speed = contacts.motion(rows.motion(contacts.scaled(motion)))[0]
-        limit = scales.impact_speed(duration)
-        hits = (speed < -limit) & (contacts.gap + duration * speed < 0)
-        bias = np.zeros((3, len(speed)))
-        bias[0] = np.where(hits, contacts.restitution * speed,
-                           np.maximum(contacts.gap, 0.0) / duration)
-        velocity = contacts.scaled(kicked)
-        free_motion = rows.motion(velocity)
-        tolerance, iterations = ACCURACY * scales.acceleration * duration, ITERATIONS
-        if hits.any():
-            tolerance, iterations = HIT_ACCURACY * -float(speed.min()), HIT_ITERATIONS
-        self._forces, used, _ = accelerated(
-            rows.response, contacts.step, contacts.cones,
-            free_motion + contacts.row_motion(bias, _NEVER), self._forces, tolerance, iterations)
-        island.world.work.solver_iterations += used
-        velocity = dissipating(velocity, rows.momentum(self._forces))
-        contacts.gap = contacts.gap + duration * contacts.motion(rows.motion(velocity))[0]
-        motion = self._drifted(motion, kicked, velocity, free, duration)
-        force = contacts.forces(self._forces)
-        closed = force[0] > _PRESSED
-        if hits.any():
-            self._note(hits & closed, force, -speed, start + duration)
-        return motion, contacts.contacts.select(closed)
-
-    def _drifted(self, motion, kicked, scaled, free, duration):
-        """Return the motion after a step at the velocities that are given scaled."""
-        count = self._island.member_count
-        linear, angular = kicked.linear.copy(), kicked.angular.copy()
-        linear[:, :count], angular[:, :count] = self.contacts.velocities(scaled)
-        struck = Motion(motion.position, motion.orientation, linear, angular)
-        turn = rotation.from_rotation_vector(duration * angular)
-        orientation = rotation.normalize(rotation.multiply(turn, motion.orientation))
-        return Motion(motion.position + duration * linear, orientation, linear,
-                      free.carried(motion, kicked, struck, orientation, duration))
+            motion = self._renew(motion, free, scales, duration)
+        step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces)
+        for attempt in range(TRIES):
+            step.attempt()
+            way = duration * self._island.closing(step.end)
+            self._ahead = None
+            if not (way > FAST * scales.length).any():
+                break
+            self._ahead = step.end, self._found(step.end, scales, way)
+            late = run_into(step.contacts.found, step.contacts.gap, self._ahead[1], step.end,
+                            duration, OVERLAP * scales.length)
+            if late is None or attempt == TRIES - 1:
+                break
+            step.learn(late)
+        self._way += way
+        self.contacts, self._forces = step.contacts, step.forces
+        hit, impulse = step.finish()
+        if hit.any():
+            self._note(hit, impulse, -step.speed, start + duration)
+        self._lost = step.lost
+        return step.end, self.contacts.contacts.select(step.closed)
 
     def _note(self, which, force, speed, time):
         """Note rebounds (k,) bool as impacts, at the end of the step they are in."""
@@ -230,16 +230,3 @@ class Pile:
                                 IMPACT, found.point[:, row], found.normal[:, row], impulse,
                                 speed[row])
         world.work.impacts += bool(which.any())
-
-
-def dissipating(velocity, change):
-    """
-    Return scaled velocities after contact impulses, which never add energy.
-
-    Impulses that have not converged may: then only so much of the change is made that the energy
-    stays. Momenta are kept either way.
-    """
-    along, size = velocity @ change, change @ change
-    if 2.0 * along + size <= 0.0 or size == 0.0:
-        return velocity + change
-    return velocity + max(0.0, -2.0 * along / size) * change

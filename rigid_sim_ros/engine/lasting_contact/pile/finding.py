@@ -11,8 +11,9 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+"""Which contacts a pile needs to know for a step, and what it runs into in one."""
 
-"""Which contacts a pile needs to know for a step."""
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.contacts import Contacts
 
 FAST = 0.005
-"""Of the length scale: a way in one step beyond which other features may meet than are near."""
+"""Of the length scale: a way in one step beyond which other features may meet than were near."""
 
 KEPT_WAY = 0.02
 """
@@ -29,40 +30,82 @@ anew. Further on others meet than are known, and gaps are followed to first orde
 """
 
 
-def contacts_of_step(island, motion, free, scales, closing, duration):
+class Found(NamedTuple):
+    """Contacts of a pile for a step; points of a pair are next to each other."""
+
+    contacts: Contacts
+    """In columns of the island; the separations are those at the start of the step."""
+
+    arms: np.ndarray
+    """(2, 3, k) [m]: from the centres of their bodies."""
+
+    late: np.ndarray
+    """(k,) bool: known from the end of the step, where they are not to overlap."""
+
+    @classmethod
+    def at(cls, contacts, motion):
+        """Return what is found at the poses of a `Motion`."""
+        arms = np.stack([contacts.point - motion.position[:, body]
+                         for body in (contacts.body_a, contacts.body_b)])
+        return cls(contacts, arms, np.zeros(contacts.count, dtype=bool))
+
+    def keys(self):
+        """Return a number for each contact's pair, (k,) int."""
+        return self.contacts.body_a * (1 << 24) + self.contacts.body_b
+
+    def select(self, which):
+        """Return those of a mask or of indices (l,)."""
+        return Found(self.contacts.select(which), self.arms[:, :, which], self.late[which])
+
+    def and_late(self, others):
+        """Return (these and others, the order (l,) int in which they come); pairs together."""
+        keys = np.concatenate((self.keys(), others.keys()))
+        order = np.argsort(keys, kind='stable')
+        joined = Found(Contacts.join([self.contacts, others.contacts]),
+                       np.concatenate((self.arms, others.arms), axis=2),
+                       np.concatenate((self.late, others.late)))
+        return joined.select(order), order
+
+
+def run_into(found, gap, ahead, end, duration, allowed):
     """
-    Return the contacts near a `Motion`, points of a pair together, and their arms (2, 3, k) [m].
+    Return the contacts, `late`, of pairs that overlap at the end of a step, or None if none does.
 
-    Where it is fast they are looked for, besides, where the bodies would be after the step without
-    contact: what would overlap then meets in it, and is often not what is near now. `closing` (p,)
-    [m] bounds how far points of each pair pass each other in the step.
+    Parameters
+    ----------
+    found, ahead : Found
+        At the start of the step, and at its end.
+    gap : (k,) [m]
+        At the start, of those found then.
+    end : Motion
+        At whose velocities the bodies have moved.
+    duration : float
+        [s]
+    allowed : float
+        Overlap [m] that does not count; nor does what there was at the start.
+
     """
-    way = KEPT_WAY * scales.length
-    found = island.find_contacts(motion, way + 2 * closing)
-    arms = _arms(found, motion)
-    fast = closing > FAST * scales.length
-    if not fast.any():
-        return found, arms
-    kicked = free.kicked(motion, duration)
-    ahead = kicked.moved(slice(None), duration * kicked.linear, duration * kicked.angular)
-    later = island.find_contacts(ahead, np.where(fast, way, -np.inf))
-    later_arms = _arms(later, ahead)
-    # the gaps of now, as far as they change at the rates of then
-    later.separation -= duration * rotation.dot(later.normal, _across(
-        later, kicked, later_arms))
-    joined = Contacts.join([found, later])
-    order = np.argsort(joined.body_a * island.bodies.count + joined.body_b, kind='stable')
-    return joined.select(order), np.concatenate((arms, later_arms), axis=2)[:, :, order]
+    pairs, of_row = np.unique(ahead.keys(), return_inverse=True)
+    before = np.full(len(pairs), -allowed)
+    keys = found.keys()
+    known = np.isin(keys, pairs) & ~found.late
+    np.minimum.at(before, np.searchsorted(pairs, keys[known]), gap[known])
+    overlap = np.zeros(len(pairs), dtype=bool)
+    deeper = ahead.contacts.separation - before[of_row]
+    overlap[of_row[deeper < -allowed]] = True
+    if not overlap.any():
+        return None
+    late = ahead.select(overlap[of_row])
+    contacts = late.contacts
+    # as deep as it was at the start it may stay
+    contacts.separation -= np.minimum(before[of_row[overlap[of_row]]] + allowed, 0.0)
+    contacts.separation -= duration * rotation.dot(contacts.normal, _across(late, end))
+    return Found(contacts, late.arms, np.ones(contacts.count, dtype=bool))
 
 
-def _arms(contacts, motion):
-    """Return the arms (2, 3, k) [m] of contacts from the centres of their bodies."""
-    return np.stack([contacts.point - motion.position[:, body]
-                     for body in (contacts.body_a, contacts.body_b)])
-
-
-def _across(contacts, motion, arms):
+def _across(found, motion):
     """Return the velocities (3, k) [m/s] of b minus a at the ends of arms."""
-    velocity = [motion.linear[:, body] + rotation.cross(motion.angular[:, body], arm)
-                for body, arm in zip((contacts.body_a, contacts.body_b), arms)]
-    return velocity[1] - velocity[0]
+    bodies = found.contacts.body_a, found.contacts.body_b
+    a, b = (motion.linear[:, body] + rotation.cross(motion.angular[:, body], arm)
+            for body, arm in zip(bodies, found.arms))
+    return b - a

@@ -72,10 +72,8 @@ class PileContacts:
     ----------
     bodies : Bodies
         The island's own.
-    contacts : Contacts
-        Points of a pair next to each other, at most sixteen.
-    arms : (2, 3, k) [m]
-        From the centres of a and b to the points.
+    found : Found
+        Of a pair at most `POINTS[-1]` points.
     orientation : (4, n)
         Of the island's bodies.
     vector : (6 slots,) or None
@@ -83,9 +81,10 @@ class PileContacts:
 
     """
 
-    def __init__(self, bodies, contacts, arms, orientation, vector):
+    def __init__(self, bodies, found, orientation, vector):
         """See the class."""
-        self.contacts = contacts
+        self.found = found
+        self.contacts = contacts = found.contacts
         a, b = contacts.body_a, contacts.body_b
         self._members = members = bodies.moving_count
         self._frames = rotation.matrix(orientation)
@@ -94,7 +93,7 @@ class PileContacts:
         self._scale = scale[:, :members]
         rows = np.stack([
             scaled_rows(self.axes, arm, self._frames[:, :, body], sign * scale[:, body])
-            for body, arm, sign in ((a, arms[0], -1.0), (b, arms[1], 1.0))], axis=2)
+            for body, arm, sign in ((a, found.arms[0], -1.0), (b, found.arms[1], 1.0))], axis=2)
         # rows of equal size: half the error of the solver
         size = np.sqrt((rows * rows).sum(axis=(2, 3)))
         np.maximum(size[1], size[2], out=size[1])

@@ -1,0 +1,166 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+"""One step of a pile: velocities by contact forces, poses by velocities, rebounds."""
+
+import numpy as np
+
+from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
+from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
+from rigid_sim_ros.engine.solvers.accelerated import accelerated
+
+ITERATIONS = 60
+"""Of the solver in a step, at most; what hardly moves needs a few."""
+
+ACCURACY = 1e-5
+"""Of what the acceleration scale does to velocities in a step: where the solver stops."""
+
+HIT_ITERATIONS = 25
+"""Of the solver in a step in which something hits; twice as many leave a third less overlap."""
+
+HIT_ACCURACY = 1e-3
+"""Of the speed of what hits: where the solver stops then."""
+
+NEVER = 1e9
+"""What is asked for of points that are not there."""
+
+_PRESSED = 1e-50
+"""Normal force that is none: the solver never lets it be zero."""
+
+
+class PileStep:
+    """
+    A step that may be tried again with more contacts.
+
+    Parameters
+    ----------
+    island : Island
+    free : FreeMotion
+    scales : Scales
+    motion : Motion
+        At the start.
+    duration : float
+        [s]
+    contacts : PileContacts
+        At the start.
+    forces : (3n,)
+        To start from, by row.
+
+    """
+
+    def __init__(self, island, free, scales, motion, duration, contacts, forces):
+        """See the class."""
+        self._island, self._free, self._scales = island, free, scales
+        self._start, self._duration = motion, duration
+        self._kicked = free.kicked(motion, duration)
+        self.contacts, self.forces = contacts, forces
+        """What is known so far."""
+        self._pressed = contacts.forces(forces)[0] > _PRESSED
+        self.end = self.hits = self.speed = None
+        """The `Motion` at the end; which contacts hit (k,) bool, and the speeds [m/s] before."""
+        self.lost = 0.0
+        """Energy [J] lost."""
+
+    @property
+    def closed(self):
+        """Return which contacts (k,) bool press."""
+        return self.contacts.forces(self.forces)[0] > _PRESSED
+
+    def attempt(self):
+        """Solve for the forces and move to the `end`."""
+        contacts, duration = self.contacts, self._duration
+        rows = contacts.rows
+        before, kicked = contacts.scaled(self._start), contacts.scaled(self._kicked)
+        limit = self._scales.impact_speed(duration)
+        self.speed = contacts.motion(rows.motion(before))[0]
+        self.hits = (self.speed < -limit) & (contacts.gap + duration * self.speed < 0)
+        asked = np.zeros((3, len(self.speed)))
+        asked[0] = np.where(contacts.found.late, contacts.gap,
+                            np.maximum(contacts.gap, 0.0)) / duration
+        tolerance, iterations = ACCURACY * self._scales.acceleration * duration, ITERATIONS
+        if self.hits.any():
+            tolerance, iterations = HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS
+        self.forces, change = self._solved(kicked, asked, self.forces, tolerance, iterations)
+        part, self.lost = kept_part(before, kicked - before, change)
+        self.end = self._drifted(kicked + part * change)
+
+    def learn(self, late):
+        """
+        Know of contacts `Found` at the end in addition.
+
+        Of those that were found at former ends too: without them the next end goes back there.
+        """
+        contacts = self.contacts
+        found = contacts.found
+        found.contacts.separation = contacts.gap
+        joined, order = found.and_late(late)
+        more = late.contacts.count
+        force = np.concatenate((contacts.forces(self.forces), np.zeros((3, more))), axis=1)
+        self.contacts = PileContacts(self._island.bodies, joined, self._start.orientation,
+                                     contacts.vector)
+        self.forces = self.contacts.row_forces(force[:, order])
+        self._pressed = np.concatenate((self._pressed, np.zeros(more, dtype=bool)))[order]
+
+    def finish(self):
+        """
+        Follow the gaps, and let what has hit rebound.
+
+        Return which contacts (k,) bool have hit that did not press before, and their impulses
+        (3, k) in contact axes.
+        """
+        contacts = self.contacts
+        velocity = contacts.scaled(self.end)
+        contacts.gap = contacts.gap + self._duration * contacts.motion(
+            contacts.rows.motion(velocity))[0]
+        impulse, closed = contacts.forces(self.forces), self.closed
+        rebounding = self.hits & closed & (contacts.restitution > 0.0)
+        if rebounding.any():
+            impulse = impulse + self._rebound(velocity, closed, rebounding)
+        return self.hits & closed & ~self._pressed, impulse
+
+    def _rebound(self, velocity, closed, rebounding):
+        """Change the velocities at the end and return the impulses (3, k) that do it."""
+        contacts = self.contacts
+        asked = np.zeros((3, len(closed)))
+        asked[0] = np.where(rebounding, contacts.restitution * self.speed, 0.0)
+        asked[0] = np.where(closed, asked[0], NEVER)
+        forces, change = self._solved(
+            velocity, asked, np.zeros_like(self.forces), HIT_ACCURACY * -float(self.speed.min()),
+            HIT_ITERATIONS)
+        part = rebound_part(velocity, change, self.lost)
+        self.end = self.end.struck(np.arange(self._island.member_count),
+                                   *contacts.velocities(part * change))
+        return part * contacts.forces(forces)
+
+    def _solved(self, velocity, asked, forces, tolerance, iterations):
+        """Return (forces by row, the change of scaled velocities they make)."""
+        contacts = self.contacts
+        forces, used, _ = accelerated(
+            contacts.rows.response, contacts.step, contacts.cones,
+            contacts.rows.motion(velocity) + contacts.row_motion(asked, NEVER), forces, tolerance,
+            iterations)
+        self._island.world.work.solver_iterations += used
+        return forces, contacts.rows.momentum(forces)
+
+    def _drifted(self, scaled):
+        """Return the motion at the end of a step at the velocities that are given scaled."""
+        start, duration, count = self._start, self._duration, self._island.member_count
+        linear, angular = self._kicked.linear.copy(), self._kicked.angular.copy()
+        linear[:, :count], angular[:, :count] = self.contacts.velocities(scaled)
+        struck = Motion(start.position, start.orientation, linear, angular)
+        turn = rotation.from_rotation_vector(duration * angular)
+        orientation = rotation.normalize(rotation.multiply(turn, start.orientation))
+        return Motion(start.position + duration * linear, orientation, linear,
+                      self._free.carried(start, self._kicked, struck, orientation, duration))
