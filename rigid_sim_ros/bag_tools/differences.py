@@ -14,7 +14,7 @@
 
 """How far what was made again is from what was recorded."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from rigid_sim_ros.messages import (
@@ -74,38 +74,59 @@ def _collision_difference(pair, time):
 
 
 @dataclass
+class _Deviation:
+    """How far the bodies of one state are apart in one quantity."""
+
+    time: float
+    largest: float
+    name: str
+    """Of the body that is farthest off."""
+
+    median: float
+    root_mean_square: float
+
+
 class Deviations:
     """Distances and angles between recorded and simulated bodies, state by state."""
 
-    time: list = field(default_factory=list)
-    distance: list = field(default_factory=list)
-    """Between centres of mass [m], (n,) for each state."""
+    def __init__(self):
+        self.distances, self.angles = [], []
+        """Between centres of mass [m]; of the turns from one attitude to the other [rad]."""
 
-    angle: list = field(default_factory=list)
-    """Of the turn from one attitude to the other [rad], (n,) for each state."""
-
-    def add(self, pair):
-        """Take in a pair of poses; raises `MessageError` if they do not compare."""
+    def add(self, pair, names):
+        """Take in a pair of poses of bodies; raises `MessageError` if they do not compare."""
         recorded, again = decode_pose_array(pair.recorded), decode_pose_array(pair.again)
         if recorded.position.shape != again.position.shape:
             raise MessageError(f'{len(recorded.position)} bodies recorded, '
                                f'{len(again.position)} simulated')
-        self.time.append(pair.time_ns / 1e9)
-        self.distance.append(np.linalg.norm(recorded.position - again.position, axis=1))
-        self.angle.append(_angle(recorded.orientation, again.orientation))
+        if not len(names):
+            return
+        distance = np.linalg.norm(recorded.position - again.position, axis=1)
+        angle = _angle(recorded.orientation, again.orientation)
+        for found, values in ((self.distances, distance), (self.angles, angle)):
+            worst = int(np.argmax(values))
+            found.append(_Deviation(
+                pair.time_ns / 1e9, float(values[worst]), names[worst], float(np.median(values)),
+                float(np.sqrt(np.mean(values ** 2)))))
 
-    def report(self, names):
+    @property
+    def found(self):
+        """Whether any pose differs."""
+        return any(one.largest != 0 for one in (*self.distances, *self.angles))
+
+    def report(self):
         """Return lines that tell the largest deviations and those at the end."""
-        distance, angle = np.array(self.distance), np.array(self.angle)
-        if not distance.size:
+        if not self.distances:
             return ['no bodies']
         lines = []
-        for what, values, unit in (('position', distance, 'm'), ('attitude', angle, 'rad')):
-            state, body = np.unravel_index(np.argmax(values), values.shape)
+        for what, found, unit in (('position', self.distances, 'm'),
+                                  ('attitude', self.angles, 'rad')):
+            # what is not a number is the worst of all
+            worst = max(found, key=lambda one: (one.largest != one.largest, one.largest))
             lines.append(
-                f'{what}: largest deviation {values[state, body]:.6g} {unit} '
-                f'({names[body]} at {self.time[state]:.9f} s), '
-                f'root mean square at the end {np.sqrt(np.mean(values[-1] ** 2)):.6g} {unit}')
+                f'{what}: largest deviation {worst.largest:.6g} {unit} '
+                f'({worst.name} at {worst.time:.9f} s), '
+                f'root mean square at the end {found[-1].root_mean_square:.6g} {unit}')
         return lines
 
     def plot(self, path):
@@ -114,11 +135,11 @@ class Deviations:
         matplotlib.use('Agg')
         from matplotlib import pyplot
         figure, axes = pyplot.subplots(2, 1, sharex=True)
-        for axis, values, label in zip(axes, (self.distance, self.angle),
-                                       ('position [m]', 'attitude [rad]')):
-            rows = np.array(values)
-            axis.semilogy(self.time, np.max(rows, axis=1), label='largest')
-            axis.semilogy(self.time, np.median(rows, axis=1), label='median')
+        for axis, found, label in zip(axes, (self.distances, self.angles),
+                                      ('position [m]', 'attitude [rad]')):
+            time = [one.time for one in found]
+            axis.semilogy(time, [one.largest for one in found], label='largest')
+            axis.semilogy(time, [one.median for one in found], label='median')
             axis.set_ylabel(label)
             axis.grid(True)
         axes[0].legend()

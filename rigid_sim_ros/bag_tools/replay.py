@@ -90,10 +90,14 @@ def _with_progress(resimulation, duration):
     last = 0.0
     with tqdm(total=round(duration, 3), unit='s', unit_scale=True, disable=None,
               desc='simulating') as bar:
+        def show(time_ns):
+            nonlocal last
+            bar.update(max(0.0, time_ns / 1e9 - last))
+            last = time_ns / 1e9
+
+        resimulation.on_progress = show
         for pair in resimulation.pairs():
-            time = pair.time_ns / 1e9
-            bar.update(max(0.0, time - last))
-            last = time
+            show(pair.time_ns)
             yield pair
 
 
@@ -114,8 +118,8 @@ def _deviate(resimulation, duration, options):
     deviations = Deviations()
     for pair in _with_progress(resimulation, duration):
         if pair.kind == POSES:
-            deviations.add(pair)
-    for line in deviations.report(resimulation.names):
+            deviations.add(pair, resimulation.names)
+    for line in deviations.report():
         print(line)
     path = options.plot or os.path.abspath(options.bag) + '_deviations.png'
     try:
@@ -125,7 +129,7 @@ def _deviate(resimulation, duration, options):
     else:
         print(f'plot: {path}')
     _tell_damage(resimulation)
-    return DIFFERENT if any(map(any, deviations.distance)) else IDENTICAL
+    return DIFFERENT if deviations.found else IDENTICAL
 
 
 def _tell_damage(resimulation):

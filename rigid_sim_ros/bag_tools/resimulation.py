@@ -17,7 +17,8 @@ Simulates a recording again from its scene and commands.
 
 The simulation is driven as the node drove it: from one recorded state to the next, with each
 command carried out at the simulated time at which it took effect. What the node published is
-made again from it, byte for byte, if the engine is the same.
+made again from it, byte for byte, if the engine is the same. A recording that began later than
+the run is simulated from the beginning of the run, and compared from its own beginning on.
 """
 
 from collections import deque
@@ -25,13 +26,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from rigid_sim_ros import topics
-from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine import CommandError, Simulation
 from rigid_sim_ros.messages import decode_pose_array, MessageError
 from rigid_sim_ros.nodes.command_readers import READERS
 from rigid_sim_ros.nodes.commands import BODY_AXES, Refused, WORLD_AXES
 from rigid_sim_ros.nodes.session import Session
 from rigid_sim_ros.recording import Bag, RecordingError
-from rigid_sim_ros.recording.journal import decode_journal, PARAMETERS
+from rigid_sim_ros.recording.history import read_history
+from rigid_sim_ros.recording.journal import (
+    ADD, decode_journal, PARAMETERS, PLACE, REMOVE, RESET)
 from rigid_sim_ros.scene import load_scene, SceneError
 
 POSES = 'poses'
@@ -77,10 +80,14 @@ class Resimulation:
         self._messages = self._bag.messages()
         self._changes = changes or {}
         self._readers = {name.rpartition('/')[2]: make() for name, make in READERS.items()}
+        self._lines = {PARAMETERS: self._set_parameters, RESET: self._reset, ADD: self._add,
+                       REMOVE: self._remove, PLACE: self._place}
         self._session = None
         self._encoders = {}
         self._collisions = None
         self._frame = None
+        self.on_progress = lambda time_ns: None
+        """Called now and then with the simulated time [ns] before the recording's first state."""
 
     @property
     def names(self):
@@ -117,18 +124,27 @@ class Resimulation:
             raise RecordingError(f'{self._bag.path} holds no state')
 
     def _begin(self, message):
-        if message.time_ns:
-            raise RecordingError(
-                f'{self._bag.path} begins at {message.time_ns / 1e9:.9f} s of a run; only a '
-                'recording from the start of a run can be simulated again')
         scene, options = self._scene_and_options()
+        history = self._bag.history()
+        begin_ns, past = read_history(history) if history else (0, ())
+        if message.time_ns and not history:
+            raise RecordingError(
+                f'{self._bag.path} begins at {message.time_ns / 1e9:.9f} s of a run, and what '
+                'was before it is not in it (or too long, or damaged)')
         try:
             simulation = Simulation(load_scene(scene), **options)
             self._frame = decode_pose_array(message.data).frame_id
         except (SceneError, ValueError, TypeError) as error:
             raise RecordingError(f'{self._bag.path} cannot be simulated again: {error}') from error
-        self._session = Session(simulation, _ANY_RATE, self._publish)
+        self._session = Session(simulation, _ANY_RATE, self._publish, begin_ns)
+        self._session.on_bodies_changed = self._encoders.clear
         self._source = topics.Source(simulation, self._frame)
+        for event in past:
+            if event.topic:
+                self._take(event.topic.rpartition('/')[2], event)
+            else:
+                self._session.advance_to(event.time_ns)
+                self.on_progress(event.time_ns)
 
     def _scene_and_options(self):
         scene, recorded = self._bag.scene(), self._bag.options()
@@ -145,10 +161,11 @@ class Resimulation:
         """Do what a message of the recording tells to do, if it does."""
         try:
             if kind == 'journal':
-                self._obey(decode_journal(message.data))
+                line = decode_journal(message.data)
+                self._lines.get(line['event'], _for_readers)(line)
             elif kind in self._readers:
                 self._carry_out(self._readers[kind](message.data)[1], message.time_ns)
-        except (MessageError, Refused) as error:
+        except (MessageError, Refused, CommandError, SceneError) as error:
             text = error.describe() if isinstance(error, Refused) else error
             raise RecordingError(f'{message.topic} at {message.time_ns / 1e9:.9f} s cannot be '
                                  f'carried out again: {text}') from error
@@ -160,14 +177,25 @@ class Resimulation:
         else:
             commands.schedule(command, time_ns, 0, now)
 
-    def _obey(self, line):
-        if line['event'] == PARAMETERS:
-            if line['command_axes'] not in (WORLD_AXES, BODY_AXES):
-                raise MessageError(f'command_axes is {line["command_axes"]!r}')
-            self._session.commands.axes = line['command_axes']
-            self._session.commands.timeout = line['command_timeout']
-        else:
-            self._session.reset(line['time_from_zero'])
+    def _set_parameters(self, line):
+        if line['command_axes'] not in (WORLD_AXES, BODY_AXES):
+            raise MessageError(f'command_axes is {line["command_axes"]!r}')
+        self._session.commands.axes = line['command_axes']
+        self._session.commands.timeout = line['command_timeout']
+
+    def _reset(self, line):
+        self._session.reset(line['time_from_zero'], line['keep_bodies'])
+
+    def _add(self, line):
+        for body in load_scene(line['scene'] + '\n').bodies:
+            self._session.add(body)
+
+    def _remove(self, line):
+        self._session.remove(line['name'])
+
+    def _place(self, line):
+        self._session.place(line['name'], *(line[field] for field in (
+            'position', 'orientation', 'velocity', 'angular_velocity')))
 
     def _compared(self, kind, message):
         session = self._session
@@ -184,3 +212,7 @@ class Resimulation:
             else self._collisions)
         return Pair(kind, message.time_ns, bytes(message.data),
                     self._encoders[kind](message.time_ns))
+
+
+def _for_readers(line):
+    """Do nothing: the line only tells what others bring about."""

@@ -142,6 +142,7 @@ class Commands:
     def carry_out(self, command, now):
         """Carry out a command at `now` [ns], the simulation's time; or raise `Refused`."""
         self._check(command)
+        self.carry_out_due(now)  # first, so that all has an order, which a recording can tell
         self._apply(command, now)
 
     def schedule(self, command, time, rank, now, then=lambda time: None):

@@ -138,10 +138,8 @@ class Entities:
             raise EntityError(f'{shown(name)} is fixed')
         changed = replace(body, **_checked(changes))
         self._check_place(changed)
-        simulation = self._session.simulation
-        simulation.set_pose(name, changed.position, changed.orientation)
-        simulation.set_velocity(name, changed.velocity, changed.angular_velocity)
-        self._session.publish_now()
+        self._session.place(name, changed.position, changed.orientation, changed.velocity,
+                            changed.angular_velocity)
 
     def _now(self, bodies):
         """Return moving bodies with the motion and the wrench they have now."""

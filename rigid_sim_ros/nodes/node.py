@@ -92,6 +92,8 @@ class SimulationNode:
         self._taken_shown = 0
         self.entities = Entities(self.session)
         self.session.on_bodies_changed = self._take_bodies
+        self.session.on_note = lambda line: self.recording.note_line(self.session.time, line)
+        self.session.on_begin = lambda lines: self.recording.begin(self.session.time, lines)
         self.session.commands.on_refused = lambda reason: self.refused.add(
             reason.kind, reason.describe)
         for name in ('command_axes', 'command_timeout'):
@@ -157,7 +159,6 @@ class SimulationNode:
         """Begin again as `Session.reset` does; time as parameter `reset_time` says if None."""
         if time_from_zero is None:
             time_from_zero = self.parameters.reset_time
-        self.recording.note_reset(self.session.time, time_from_zero)
         self._display.clear(self.session.time)
         self.control.reset(time_from_zero, keep_bodies)
 
@@ -174,16 +175,18 @@ class SimulationNode:
             self.recording.start(self.session.time)
         except RecordingError as error:
             return False, str(error)
-        self.publications.record_scene(self.session.time)
+        self.publications.record_start(self.session.time)
         return True, self.recording.text
 
     # -- inside --------------------------------------------------------------------------------
 
     def _publish_state(self, time, collisions):
+        self.recording.note_state(time)
         self.publications.send_state(time, collisions)
         self._display.take(time, collisions)
 
     def _take_bodies(self):
+        self.recording.note_bodies(self.session.time)
         self._source.scene_text = dump_scene(self.session.simulation.scene)
         self._display.clear(self.session.time)
         self.publications.send_scene(self.session.time)
@@ -209,10 +212,10 @@ class SimulationNode:
         if self.parameters.command_timing != STAMP or stamp == 0:
             with self.control.failing_softly():
                 session.commands.carry_out(command, now)
-                self.recording.write(topic, now, data)
+                self.recording.note(topic, now, data)
             return
         session.commands.schedule(
-            command, stamp, rank, now, lambda time: self.recording.write(topic, time, data))
+            command, stamp, rank, now, lambda time: self.recording.note(topic, time, data))
         if stamp < now:
             late = (now - stamp) / NANOSECONDS
             self.late.add('late', lambda: (

@@ -24,7 +24,8 @@ from pathlib import Path
 
 from rigid_sim_ros.messages import DiagnosticStatus, ERROR, OK, WARN
 from rigid_sim_ros.recording import Recorder, RECORDING, RecordingError
-from rigid_sim_ros.recording.journal import encode_parameters, encode_reset
+from rigid_sim_ros.recording.history import History
+from rigid_sim_ros.recording.journal import encode_bodies, encode_parameters
 from rigid_sim_ros.topics import COMMANDS, EVERY_SECOND, JOURNAL, PUBLISHED
 
 FOLDER = 'recordings'
@@ -34,20 +35,32 @@ _NOT_RECORDED = ('visualization_msgs/msg/MarkerArray',)
 """Types of what shows the poses a second time, at fifteen times their size."""
 
 
+_NO_HISTORY = ('; it cannot be simulated again, as more commands came before than are kept; what '
+               'is recorded after a reset can')
+
+
 class Recording:
-    """At most one recording at a time."""
+    """
+    At most one recording at a time, and what one that begins later will need.
+
+    Outputs are given to `write`; all that changes the simulation is given to the methods whose
+    names begin with `note`, whether it is recorded or not.
+    """
 
     def __init__(self, node, parameters, source):
         """Record what belongs to a `rclpy` node and a `topics.Source`, when told to."""
         self._node = node
         self._parameters = parameters
         self._source = source
+        self._scene_text = source.scene_text  # as loaded, whatever bodies are added later
         self._names = {row.name: node.resolve_topic_name(row.name)
                        for row in (*PUBLISHED, *COMMANDS, JOURNAL)}
         self._recorded = frozenset(
             row.name for row in PUBLISHED
             if row.when != EVERY_SECOND and row.type_name not in _NOT_RECORDED)
+        self._history = History([row.name for row in (*COMMANDS, JOURNAL)])
         self._recorder = None
+        self._remark = ''
         self._count = 0
         self._reported = ''
 
@@ -61,7 +74,7 @@ class Recording:
         """Where it records, as a phrase."""
         if self._recorder is None:
             return 'not recording'
-        return self._recorder.error or f'recording to {self._recorder.path}'
+        return self._recorder.error or f'recording to {self._recorder.path}{self._remark}'
 
     def start(self, time):
         """
@@ -75,9 +88,10 @@ class Recording:
         self._recorder = Recorder(
             self._next_path(), self._rows(),
             compression=self._parameters.record_compression,
-            when_full=self._parameters.record_when_full, scene=self._source.scene_text,
-            options=self._options())
-        self.note_parameters(time)
+            when_full=self._parameters.record_when_full, scene=self._scene_text,
+            options=self._options(), history=self._history.pieces())
+        self._remark = '' if self._history.complete else _NO_HISTORY
+        self.write(JOURNAL.name, time, self._line_of_parameters())
 
     def stop(self):
         """Finish the recording, if there is one, and say how it went, as a phrase."""
@@ -98,14 +112,34 @@ class Recording:
         if self._recorder is not None:
             self._recorder.write(self._names[name], time, data)
 
-    def note_parameters(self, time):
-        """Write down, for a rerun, the parameters that commands depend on."""
-        self.write(JOURNAL.name, time, encode_parameters(
-            self._parameters.command_axes, self._parameters.command_timeout))
+    def begin(self, time, lines):
+        """Note that the scene begins at `time` [ns], with the bodies that lines tell of."""
+        self._history.begin(time)
+        for line in (self._line_of_parameters(), *lines):
+            self._history.add_message(JOURNAL.name, time, line)
 
-    def note_reset(self, time, time_from_zero):
-        """Write down, for a rerun, that the scene begins again."""
-        self.write(JOURNAL.name, time, encode_reset(time_from_zero))
+    def note(self, name, time, data):
+        """Note a command, the bytes received on a topic, that took effect at `time` [ns]."""
+        self._history.add_message(name, time, data)
+        self.write(name, time, data)
+
+    def note_line(self, time, line):
+        """Note a line of the journal."""
+        self.note(JOURNAL.name, time, line)
+
+    def note_parameters(self, time):
+        """Note the parameters that commands depend on."""
+        self.note_line(time, self._line_of_parameters())
+
+    def note_state(self, time):
+        """Note that the simulation was advanced to `time` [ns], if it was."""
+        self._history.add_state(time)
+
+    def note_bodies(self, time):
+        """Write down, for readers, the bodies there are now."""
+        simulation = self._source.simulation
+        self.write(JOURNAL.name, time, encode_bodies(
+            len(simulation.names), simulation.all_names))
 
     def report(self, log_error):
         """Say by `log_error(text)`, once, that the recording failed; call now and then."""
@@ -134,6 +168,9 @@ class Recording:
             given = f'{FOLDER}/{scene}_{datetime.now():%Y_%m_%d-%H_%M_%S}'
         self._count += 1
         return given if self._count == 1 else f'{given}_{self._count}'
+
+    def _line_of_parameters(self):
+        return encode_parameters(self._parameters.command_axes, self._parameters.command_timeout)
 
     def _rows(self):
         rows = [row for row in PUBLISHED if row.name in self._recorded]

@@ -21,8 +21,12 @@ Nothing here knows ROS or wall time, so a run is the same however fast it is dri
 import numpy as np
 
 from rigid_sim_ros.engine.events import BEGIN, IMPACT
+from rigid_sim_ros.engine.model import Scene
 from rigid_sim_ros.nodes.commands import Commands
 from rigid_sim_ros.nodes.pacing import NANOSECONDS, PublishGrid
+from rigid_sim_ros.recording.journal import (
+    encode_add, encode_place, encode_remove, encode_reset)
+from rigid_sim_ros.scene import dump_scene
 
 
 class Session:
@@ -38,24 +42,30 @@ class Session:
     publish : callable
         Called as `publish(time, collisions)` when the simulation stands at a time [ns] that is
         to be published, with the events (dtype `events.COLLISION`) since the last one.
+    time : int
+        The node's simulated time [ns] at which the scene begins.
 
     """
 
-    def __init__(self, simulation, publish_rate, publish):
+    def __init__(self, simulation, publish_rate, publish, time=0):
         self.simulation = simulation
         self.commands = Commands(simulation)
         self.paused = False
         self.pause_on_collision = False
         self._publish = publish
         self._grid = PublishGrid(publish_rate)
-        self._time = 0
+        self._time = time
         # node time at which the simulation's own clock was zero; not zero after a reset that
         # keeps time running
-        self._origin = 0
+        self._origin = time
         self._added = []
         self._removed = []
         self.on_bodies_changed = lambda: None
         """Called when bodies were added or removed, before the next state is published."""
+        self.on_note = lambda line: None
+        """Called with a line of `recording.journal` for all that is done besides commands."""
+        self.on_begin = lambda lines: None
+        """Called when the scene begins again, with lines that tell what bodies it has now."""
 
     @property
     def time(self):
@@ -94,7 +104,7 @@ class Session:
         """Add a `model.Body` at once; raises `CommandError` if its name is taken."""
         self.simulation.add(body)
         self._added.append(body)
-        self._take_bodies()
+        self._take_bodies(_line_of_added(body))
 
     def remove(self, name):
         """Take a body out at once; raises `CommandError` if there is none of that name."""
@@ -103,7 +113,14 @@ class Session:
         if len(remaining) == len(self._added):
             self._removed.append(name)
         self._added = remaining
-        self._take_bodies()
+        self._take_bodies(encode_remove(name))
+
+    def place(self, name, position, orientation, velocity, angular_velocity):
+        """Give a moving body another pose and velocity at once; raises `CommandError`."""
+        self.simulation.set_pose(name, position, orientation)
+        self.simulation.set_velocity(name, velocity, angular_velocity)
+        self.on_note(encode_place(name, position, orientation, velocity, angular_velocity))
+        self.publish_now()
 
     @property
     def added_names(self):
@@ -119,6 +136,7 @@ class Session:
         """
         added, removed = self._added, self._removed
         self._added, self._removed = [], []
+        self.on_note(encode_reset(time_from_zero, keep_bodies))
         self.simulation.reset()
         self.commands.clear()
         if keep_bodies:
@@ -131,6 +149,7 @@ class Session:
         if time_from_zero:
             self._time = 0
         self._origin = self._time
+        self.on_begin([*map(encode_remove, self._removed), *map(_line_of_added, self._added)])
         if added or removed:
             self.on_bodies_changed()
         self.publish_now()
@@ -152,7 +171,8 @@ class Session:
         self.paused |= self.pause_on_collision and _touched(collisions)
         self._publish(self._time, collisions)
 
-    def _take_bodies(self):
+    def _take_bodies(self, line):
+        self.on_note(line)
         self.commands.change_bodies()
         self.on_bodies_changed()
         self.publish_now()
@@ -162,6 +182,10 @@ class Session:
         target = (time - self._origin) / NANOSECONDS
         self.simulation.advance(max(0.0, target - self.simulation.time))
         self._time = time
+
+
+def _line_of_added(body):
+    return encode_add(dump_scene(Scene(bodies=(body,))))
 
 
 def _touched(collisions):

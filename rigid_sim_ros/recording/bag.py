@@ -123,6 +123,10 @@ class Bag:
         """Return the attached scene, YAML; empty if there is none."""
         return self.attachments.get('scene.yaml', b'').decode(errors='replace')
 
+    def history(self):
+        """Return what happened before, bytes for `read_history`; empty if it is not attached."""
+        return self.attachments.get('history', b'')
+
     def options(self):
         """Return what else the run was started with, a dict; empty if there is none."""
         try:

@@ -82,6 +82,10 @@ class BagWriter:
         if self._file.chunk_size >= CHUNK_BYTES:
             self._file.close_chunk()
 
+    def attach(self, name, media_type, parts):
+        """Attach data in parts to the file that is being written, and to none after it."""
+        self._file.attach(name, media_type, parts)
+
     def flush(self):
         """Put everything on the disk, safe from a power cut."""
         self._file.close_chunk()

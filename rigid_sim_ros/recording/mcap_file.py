@@ -21,6 +21,7 @@ that floating-point data is worth, and lets a chunk end when its time is up.
 """
 
 import fcntl
+from functools import reduce
 import os
 import struct
 from zlib import crc32
@@ -92,7 +93,7 @@ class McapFile:
         self._begin_chunk(_packed([*self._schemas, *self._channels]))
         self._put(MAGIC + _packed([Header('ros2', library)]))
         for name, media_type, data in attachments:
-            self._attach(name, media_type, data)
+            self.attach(name, media_type, [data])
 
     @property
     def has_messages(self):
@@ -162,6 +163,18 @@ class McapFile:
         self._put(record)
         self._index[Opcode.METADATA_INDEX].append(index)
 
+    def attach(self, name, media_type, parts):
+        """Attach data that comes in parts, which together may be large."""
+        size = sum(map(len, parts))
+        # what the package writes for no data, and the data put in
+        head = bytearray(_packed([Attachment(0, 0, name, media_type, b'')])[:-4])
+        struct.pack_into('<Q', head, 1, len(head) - 9 + size + 4)
+        struct.pack_into('<Q', head, len(head) - 8, size)
+        crc = reduce(lambda crc, part: crc32(part, crc), parts, crc32(head[9:]))
+        index = AttachmentIndex(self.size, len(head) + size + 4, 0, 0, size, name, media_type)
+        self._put(head, *parts, struct.pack('<I', crc))
+        self._index[Opcode.ATTACHMENT_INDEX].append(index)
+
     def finish(self):
         """Write the open chunk, the summary and the footer, and close the file."""
         try:
@@ -192,14 +205,6 @@ class McapFile:
             topic = self._channels[channel - 1].topic
             self.summary.add(topic, self._chunk_start, len(entries))
         self.summary.end_ns = max(self.summary.end_ns, self._chunk_end)
-
-    def _attach(self, name, media_type, data):
-        record = _packed([Attachment(0, 0, name, media_type, data)])
-        index = AttachmentIndex(
-            offset=self.size, length=len(record), log_time=0, create_time=0, data_size=len(data),
-            name=name, media_type=media_type)
-        self._put(record)
-        self._index[Opcode.ATTACHMENT_INDEX].append(index)
 
     def _put(self, *parts):
         """Write whole records at the end, all or none of them."""

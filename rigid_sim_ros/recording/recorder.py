@@ -32,6 +32,7 @@ from time import monotonic
 from rigid_sim_ros.recording.bag_metadata import bag_topic
 from rigid_sim_ros.recording.bag_writer import BagWriter
 from rigid_sim_ros.recording.errors import RecordingError
+from rigid_sim_ros.recording.history import ATTACHMENT, MEDIA_TYPE
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
 
 RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
@@ -115,13 +116,16 @@ class Recorder:
         The scene as loaded, attached as `scene.yaml`.
     options : dict
         What else is needed to run it again, attached as `run.json`.
+    history : sequence of bytes
+        What happened before, as `History.pieces` gives it; attached as `history`.
 
     Raises `RecordingError` if the folder is there already or cannot be made.
 
     """
 
     def __init__(self, uri, topics, *, compression='zstd', chunk_seconds=1.0, max_bytes=0,
-                 max_duration=0.0, queue_bytes=2**28, when_full=DROP, scene='', options=None):
+                 max_duration=0.0, queue_bytes=2**28, when_full=DROP, scene='', options=None,
+                 history=()):
         if compression not in COMPRESSIONS:
             raise RecordingError(f'compression is {compression!r}; allowed: '
                                  f'{", ".join(COMPRESSIONS)}')
@@ -135,6 +139,7 @@ class Recorder:
         self._queued_bytes = self._dropped_count = 0
         self._phase, self._error = RECORDING, ''
         self._closing_until = None
+        self._history = history
         self._bag = self._begin(topics, compression, _attachments(scene, options), max_bytes,
                                 round(max_duration * 1e9))
         self._thread = Thread(target=self._run, name='recorder', daemon=True)
@@ -213,6 +218,10 @@ class Recorder:
 
     def _run(self):
         try:
+            if self._history:
+                # by this thread, as it may be large
+                self._bag.attach(ATTACHMENT, MEDIA_TYPE, self._history)
+                self._history = ()
             self._write_until_closed()
             self._bag.finish()
             with self._condition:

@@ -163,3 +163,10 @@ def test_late_command_is_carried_out_next_and_held_from_then(simulation, command
     commands.carry_out_due(NANOSECONDS)
     assert_array_equal(simulation.force[0], VECTOR)
     assert commands.next_time == 2 * NANOSECONDS
+
+
+def test_what_is_due_goes_before_what_comes_now(simulation, commands):
+    commands.schedule(body_command('one', linear_velocity=-VECTOR), 10, 0, now=10)
+    commands.carry_out(body_command('one', linear_velocity=VECTOR), 10)
+    commands.carry_out_due(10)
+    assert_array_equal(simulation.linear_velocity[0], VECTOR)

@@ -70,7 +70,8 @@ def test_commands_and_journal_come_back_in_their_order(tmp_path, run):
     assert decode_journal(commands[0].data) == {
         'event': 'parameters', 'command_axes': 'body', 'command_timeout': 0.5}
     assert commands[1].data == velocity
-    assert decode_journal(commands[2].data) == {'event': 'reset', 'time_from_zero': False}
+    assert decode_journal(commands[2].data) == {
+        'event': 'reset', 'time_from_zero': False, 'keep_bodies': False}
 
 
 @pytest.mark.parametrize('text', [
