@@ -19,6 +19,7 @@ import re
 
 from rigid_sim_ros.engine import CommandError
 from rigid_sim_ros.engine.commands import unit_quaternion, vector
+from rigid_sim_ros.nodes.commands import LARGEST_VALUE
 from rigid_sim_ros.nodes.counted_warnings import near_names, shown
 from rigid_sim_ros.scene import load_scene, SceneError, values
 from rigid_sim_ros.scene.overlap import deepest_overlap
@@ -167,10 +168,15 @@ class Entities:
 
 
 def _checked(changes):
-    """Return values of `model.Body` as tuples of finite numbers; raises `EntityError`."""
+    """Return values of `model.Body` as tuples of numbers of sense; raises `EntityError`."""
     try:
-        return {field: tuple((unit_quaternion(value) if field == 'orientation'
-                              else vector(field, value)).tolist())
-                for field, value in changes.items()}
+        checked = {field: tuple((unit_quaternion(value) if field == 'orientation'
+                                 else vector(field, value)).tolist())
+                   for field, value in changes.items()}
     except CommandError as error:
         raise EntityError(str(error)) from error
+    for field, numbers in checked.items():
+        if max(map(abs, numbers)) > LARGEST_VALUE:
+            raise EntityError(f'{field} is {list(numbers)}; allowed: at most {LARGEST_VALUE:g} '
+                              'either way')
+    return checked

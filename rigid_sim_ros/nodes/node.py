@@ -175,7 +175,9 @@ class SimulationNode:
             self.recording.start(self.session.time)
         except RecordingError as error:
             return False, str(error)
-        self.publications.record_start(self.session.time)
+        self.publications.record_scene(self.session.time)
+        if not self.failure:
+            self.publications.record_state(self.session.time)
         return True, self.recording.text
 
     # -- inside --------------------------------------------------------------------------------

@@ -142,9 +142,12 @@ class Publications:
             publication.forget_bodies()
         self._send(ON_CHANGE, time)
 
-    def record_start(self, time):
-        """Write the scene and the state to the recording alone: it has just been started."""
+    def record_scene(self, time):
+        """Write to the recording what only changes with the scene: it has just been started."""
         self._send(ON_CHANGE, time, to_subscribers=False)
+
+    def record_state(self, time):
+        """Write the state to the recording alone, as it is."""
         self._send(EVERY_STEP, time, to_subscribers=False)
 
     def send_diagnostics(self, time, statuses):

@@ -126,10 +126,13 @@ class StandardServices:
         if scope & kind.SCOPE_STATE:
             self._node.reset(time_from_zero=bool(scope & kind.SCOPE_TIME),
                              keep_bodies=not scope & kind.SCOPE_SPAWNED)
-        else:
+            return self._ok(response)
+
+        def delete_spawned():
             for name in self._node.session.added_names:
                 self._node.entities.delete(name)
-        return self._ok(response)
+
+        return self._do(response, self._entity_result, delete_spawned)
 
     def get_entities(self, request, response):
         """Tell the names of all bodies."""
@@ -142,27 +145,20 @@ class StandardServices:
 
     def get_entity_state(self, request, response):
         """Tell where a body is and how it moves."""
-        try:
+        def tell():
             response.state = self._entity_state(request.entity)
-        except UnknownEntity as error:
-            return self._answer(response, self._messages.Result.RESULT_NOT_FOUND, error)
-        return self._ok(response)
+
+        return self._do(response, self._entity_result, tell)
 
     def set_entity_state(self, request, response):
         """Place a body and set its velocity."""
         if not self._is_world(request.state.header.frame_id):
             return self._unsupported(response, f'frame {request.state.header.frame_id!r}')
         pose, twist = request.state.pose, request.state.twist
-        try:
-            self._node.entities.place(
-                request.entity, position=_vector(pose.position),
-                orientation=_quaternion(pose.orientation), velocity=_vector(twist.linear),
-                angular_velocity=_vector(twist.angular))
-        except UnknownEntity as error:
-            return self._answer(response, self._messages.Result.RESULT_NOT_FOUND, error)
-        except EntityError as error:
-            return self._answer(response, self._messages.Result.RESULT_OPERATION_FAILED, error)
-        return self._ok(response)
+        return self._do(response, self._entity_result, lambda: self._node.entities.place(
+            request.entity, position=_vector(pose.position),
+            orientation=_quaternion(pose.orientation), velocity=_vector(twist.linear),
+            angular_velocity=_vector(twist.angular)))
 
     def spawn_entity(self, request, response):
         """Add a body, described as in a scene file."""
@@ -177,22 +173,20 @@ class StandardServices:
             return self._answer(response, type(response).NO_RESOURCE,
                                 'uri and resource_string are empty')
         pose = request.initial_pose.pose
-        try:
+
+        def spawn():
             body = described_body(resource.resource_string, resource.uri)
             response.entity_name = self._node.entities.spawn(
                 body, request.name, request.allow_renaming, position=_vector(pose.position),
                 orientation=_quaternion(pose.orientation))
-        except EntityError as error:
-            return self._answer(response, self._spawn_result(response, error), error)
-        return self._ok(response)
+
+        return self._do(
+            response, lambda error: self._spawn_result(response, error), spawn)
 
     def delete_entity(self, request, response):
         """Take a body out."""
-        try:
-            self._node.entities.delete(request.entity)
-        except UnknownEntity as error:
-            return self._answer(response, self._messages.Result.RESULT_NOT_FOUND, error)
-        return self._ok(response)
+        return self._do(response, self._entity_result,
+                            lambda: self._node.entities.delete(request.entity))
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -210,13 +204,13 @@ class StandardServices:
         filters = request.filters
         if len(filters.categories) or len(filters.tags.tags) or filters.bounds.type:
             return self._unsupported(response, 'a filter by category, tag or bounds')
-        try:
+
+        def tell():
             names = self._node.entities.matching(filters.filter)
-        except EntityError as error:
-            return self._answer(response, self._messages.Result.RESULT_OPERATION_FAILED, error)
-        for field, value in fields(list(names)).items():
-            setattr(response, field, value)
-        return self._ok(response)
+            for field, value in fields(list(names)).items():
+                setattr(response, field, value)
+
+        return self._do(response, self._entity_result, tell)
 
     def _entity_state(self, name):
         body, time = self._node.entities.body(name), self._node.session.time
@@ -230,6 +224,25 @@ class StandardServices:
             for axis, value in zip('xyzw', values):
                 setattr(target, axis, float(value))
         return state
+
+    def _do(self, response, result_of, act):
+        """Do what needs a simulation that can go on, by `act()`, and answer how it went."""
+        node = self._node
+        try:
+            if not node.failure:
+                with node.control.failing_softly():
+                    act()
+        except EntityError as error:
+            return self._answer(response, result_of(error), error)
+        if node.failure:
+            return self._answer(response, self._messages.Result.RESULT_OPERATION_FAILED,
+                                node.failure)
+        return self._ok(response)
+
+    def _entity_result(self, error):
+        result = self._messages.Result
+        return (result.RESULT_NOT_FOUND if isinstance(error, UnknownEntity)
+                else result.RESULT_OPERATION_FAILED)
 
     def _spawn_result(self, response, error):
         name = _SPAWN_ERRORS.get(type(error), '')

@@ -132,6 +132,8 @@ def test_no_two_bodies_in_one_place(session, entities):
         entities.place('one', orientation=(0, 0, 0, 0))
     with pytest.raises(EntityError, match='velocity'):
         entities.place('one', velocity=(np.nan, 0, 0), position=(7, 7, 7))
+    with pytest.raises(EntityError, match=r'angular_velocity is \[0.0, 2000000000.0, 0.0\]; allo'):
+        entities.place('one', angular_velocity=(0, 2e9, 0))
     with pytest.raises(EntityError, match='fixed'):
         entities.place('wall', position=(7, 7, 7))
     assert_allclose(entities.body('one').position, (1, 0, 0), atol=1e-12)

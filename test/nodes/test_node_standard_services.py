@@ -22,6 +22,7 @@ pytest.importorskip('rclpy')
 pytest.importorskip('simulation_interfaces.srv', reason='needs simulation_interfaces')
 
 from node_harness import Client, NodeProcess  # noqa: E402, I100
+from rigid_sim_ros.bag_tools import replay  # noqa: E402
 from rigid_sim_ros.nodes.standard_services import SERVICES, snake_case  # noqa: E402
 from simulation_interfaces.msg import Result, SimulationState, SimulatorFeatures  # noqa: E402
 from simulation_interfaces.srv import (  # noqa: E402
@@ -188,6 +189,53 @@ def test_entity_state_is_set_and_told(call):
     refused = call('SetEntityState', entity='one', state=state).result
     assert refused.result == Result.RESULT_OPERATION_FAILED
     assert 'overlap' in refused.error_message
+
+
+def test_what_services_did_is_simulated_again(running, call, tmp_path, capsys):
+    client, _ = running
+    scope = ResetSimulation.Request
+    call('StepSimulation', steps=3)
+    assert spawn(call, 'early', (0, 0, 2)).result.result == Result.RESULT_OK
+    recording = client.call('~/record', data=True)
+    assert recording.success, recording.message
+    for number in range(3):
+        assert spawn(call, f'new_{number}', (3, number, 2)).result.result == Result.RESULT_OK
+        call('StepSimulation', steps=4)
+        state = call('GetEntityState', entity='one').state
+        state.pose.position.z, state.twist.angular.x = 1.5 * number, 2.0
+        assert call('SetEntityState', entity='one', state=state).result.result == Result.RESULT_OK
+        call('StepSimulation', steps=4)
+        assert call('DeleteEntity', entity='early').result.result in (
+            Result.RESULT_OK, Result.RESULT_NOT_FOUND)
+        call('StepSimulation', steps=4)
+        call('ResetSimulation', scope=(scope.SCOPE_STATE, scope.SCOPE_SPAWNED,
+                                       scope.SCOPE_TIME | scope.SCOPE_STATE)[number])
+        call('StepSimulation', steps=4)
+    assert client.call('~/record', data=False).success
+    assert replay.main([recording.message.split(' to ')[-1]]) == 0
+    assert capsys.readouterr().out.startswith('identical: ')
+
+
+def test_nothing_is_changed_once_the_simulation_cannot_go_on(running, call):
+    client, process = running
+    plank = '{box: {size: [0.1, 0.2, 0.3]}, mass: 1.0}'
+    assert spawn(call, 'plank', (0, 0, 3), plank).result.result == Result.RESULT_OK
+    call.state(SimulationState.STATE_PLAYING)
+    client.command('~/cmd_torque', 'plank', vector=(9e8, 3e8, -1e8))
+    process.wait_for_text('the simulation cannot go on, only be reset')
+    for response in (spawn(call, 'new', (0, 0, 5)), call('DeleteEntity', entity='one'),
+                     call('SetEntityState', entity='one'), call('GetEntityState', entity='one'),
+                     call('GetEntitiesStates')):
+        assert response.result.result == Result.RESULT_OPERATION_FAILED
+        assert 'cannot go on, only be reset' in response.result.error_message
+    # it can be recorded, to see what the reset does
+    recording = client.call('~/record', data=True)
+    assert recording.success
+    call('ResetSimulation')
+    assert call.entities() == ['one', 'wall']
+    call('StepSimulation', steps=3)
+    assert client.call('~/record', data=False).success
+    assert replay.main([recording.message.split(' to ')[-1]]) == 0
 
 
 def test_quitting_ends_the_process(running, call):
