@@ -47,6 +47,8 @@ class Encounters:
         bodies = world.bodies
         self._flying = np.zeros(bodies.count, dtype=bool)
         self._solid = np.arange(bodies.count) >= bodies.moving_count
+        self.active = False
+        """Whether any body is in flight."""
         self._horizon = np.inf
         self._next = np.inf
         """The earliest time [s] at which there is anything to do."""
@@ -54,11 +56,6 @@ class Encounters:
         self.due = np.zeros(0)
         """(p,) [s]: the pair does not touch before; its touch itself where `found`."""
         self.found = self._guarded = np.zeros(0, dtype=bool)
-
-    @property
-    def active(self):
-        """Whether any body is in flight."""
-        return bool(self._flying.any())
 
     # -- what the method tells -----------------------------------------------------------------
 
@@ -71,6 +68,7 @@ class Encounters:
         """
         self._drop(indices)
         self._flying[indices] = self._solid[indices] = True
+        self.active = bool(self._flying.any())
         if len(indices) * int(self._solid.sum()) > RENEWED_PAIRS:
             self._renew(time)
         else:
@@ -82,6 +80,7 @@ class Encounters:
         """Let bodies (k,) lie still from `time` [s] on: what flies may hit them."""
         self._drop(indices)
         self._flying[indices] = False
+        self.active = bool(self._flying.any())
         self._solid[indices] = True
         self._append(*self._pairs_with(indices), time)
 
@@ -89,6 +88,7 @@ class Encounters:
         """Nothing in flight meets these bodies (k,) until they fly or rest."""
         self._drop(indices)
         self._flying[indices] = self._solid[indices] = False
+        self.active = bool(self._flying.any())
 
     # -- what it asks --------------------------------------------------------------------------
 

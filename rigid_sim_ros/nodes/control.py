@@ -23,6 +23,9 @@ from rigid_sim_ros.nodes.pacing import Pacer
 IDLE = 0.1
 """Wall time [s] between two looks at the world while paused."""
 
+CANNOT_GO_ON = ArithmeticError, LinAlgError
+"""What the engine raises if it cannot compute what it was told to."""
+
 
 class Control:
     """
@@ -90,28 +93,36 @@ class Control:
         """
         try:
             yield
-        except (ArithmeticError, LinAlgError) as error:
-            self._session.paused = True
-            self.failure = f'the simulation cannot go on, only be reset: {error}'
-            self._log_error(self.failure)
+        except CANNOT_GO_ON as error:
+            self._fail(error)
 
-    def work(self):
+    def work(self, now):
         """
-        Simulate and publish one state if it is due; return when to look again [s].
+        Simulate and publish one state if it is due at `now` [s]; return when to look again [s].
 
         A state is computed when it is due and not before, so that a command is seen in the very
         next state published after it arrived.
         """
-        session = self._session
+        session, pacer = self._session, self.pacer
         if session.paused:
-            return self._now() + IDLE
+            return now + IDLE
         time = session.next_time
-        if self._now() < self.pacer.due(time):
-            return self.pacer.due(time)
-        with self.failing_softly(), self._stop.breakable():
-            session.advance()
-        self.pacer.published(time, self._now())
-        return self._now() + IDLE if session.paused else self.pacer.due(session.next_time)
+        due = pacer.due(time)
+        if now < due:
+            return due
+        try:
+            with self._stop.breakable():
+                session.advance()
+        except CANNOT_GO_ON as error:
+            self._fail(error)
+        now = self._now()
+        pacer.published(time, now)
+        return now + IDLE if session.paused else pacer.due(session.next_time)
+
+    def _fail(self, error):
+        self._session.paused = True
+        self.failure = f'the simulation cannot go on, only be reset: {error}'
+        self._log_error(self.failure)
 
     def _change_pace(self):
         parameters = self._parameters

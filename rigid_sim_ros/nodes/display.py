@@ -51,8 +51,7 @@ class Display:
         before = source.collisions
         if events:
             source.collisions = np.concatenate(events)
-        for publication in self._publications.of(FOR_DISPLAY):
-            publication.send(time)
+        self._publications.send(FOR_DISPLAY, time)
         source.collisions = before
         events.clear()
         self._drawn_time = time

@@ -81,7 +81,7 @@ class SimulationNode:
         self.refused = CountedWarnings(logger.warning)
         self.late = CountedWarnings(logger.warning)
         self.publications = Publications(
-            self.ros, self._source, self.recording, parameters.reliability)
+            self.ros, self._source, self.recording, parameters.reliability, now)
         if parameters.publish_tf:
             self._publish_transforms()
         self._display = Display(self.publications, self._source, now)
@@ -117,16 +117,12 @@ class SimulationNode:
 
     def work(self):
         """Do what is due; return the wall time [s] at which to call again."""
-        if self.control.paused:
+        now = self._now()
+        if self.session.paused:
             self._show_changes()
-        due = self.control.work()
-        if self._diagnostics.due(self._now()):
-            self._clock_source.look()
-            self._diagnostics.complain(self.ros.get_logger().warning)
-            self.recording.report(self.ros.get_logger().error)
-            self.publications.send_diagnostics(
-                self.session.time, lambda: self._diagnostics.statuses(self._now()))
-        return due
+        if self._diagnostics.due(now):
+            self._report(now)
+        return self.control.work(now)
 
     def close(self):
         """Finish the recording, say so, and leave the ROS graph."""
@@ -192,6 +188,13 @@ class SimulationNode:
         self._source.scene_text = dump_scene(self.session.simulation.scene)
         self._display.clear(self.session.time)
         self.publications.send_scene(self.session.time)
+
+    def _report(self, now):
+        self._clock_source.look()
+        self._diagnostics.complain(self.ros.get_logger().warning)
+        self.recording.report(self.ros.get_logger().error)
+        self.publications.send_diagnostics(
+            self.session.time, lambda: self._diagnostics.statuses(now))
 
     def _publish_transforms(self):
         try:

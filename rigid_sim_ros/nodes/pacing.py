@@ -79,12 +79,14 @@ class Pacer:
             return
         wall_period = self._period / self._factor
         lateness = now - self._scheduled(time)
-        self.worst_lateness = max(self.worst_lateness, lateness)
-        self.missed_deadlines += lateness > wall_period
+        self._earliest = now + wall_period / CATCH_UP_SPEED
+        if lateness > self.worst_lateness:
+            self.worst_lateness = lateness
+        if lateness > wall_period:
+            self.missed_deadlines += 1
         if lateness > MOST_LATENESS:
             self.time_given_up += lateness
             self._anchor_wall += lateness
-        self._earliest = now + wall_period / CATCH_UP_SPEED
 
     def _scheduled(self, time):
         return self._anchor_wall + (time - self._anchor_time) / (NANOSECONDS * self._factor)
@@ -102,22 +104,23 @@ class PublishGrid:
         """Begin a grid of `rate` [Hz] at `origin` [ns], which is itself on the grid."""
         self._rate = rate
         self._origin = origin
-        self._asked = self._answer = None
+        self._before, self._number, self._next = origin, 1, self._at(1)
 
     def after(self, time):
         """Return the first time on the grid later than `time` [ns]."""
-        # asked again and again while the same state is waited for
-        if time != self._asked:
-            self._asked, self._answer = time, self._after(time)
-        return self._answer
+        # asked again and again while the same state is waited for, and then for the one after it
+        if not self._before <= time < self._next:
+            number = self._number + 1 if time == self._next else self._number_after(time)
+            self._before, self._number, self._next = time, number, self._at(number)
+        return self._next
 
-    def _after(self, time):
+    def _number_after(self, time):
         number = int((time - self._origin) * self._rate / NANOSECONDS)
         while self._at(number) > time:
             number -= 1
         while self._at(number) <= time:
             number += 1
-        return self._at(number)
+        return number
 
     def _at(self, number):
         return self._origin + round(number * NANOSECONDS / self._rate)

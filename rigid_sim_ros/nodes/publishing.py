@@ -26,6 +26,10 @@ from rigid_sim_ros.topics import (
     EVERY_SECOND, EVERY_STEP, FOR_DISPLAY, ON_CHANGE, ON_EVENTS, PUBLISHED)
 
 
+LOOK_INTERVAL = 0.02
+"""Wall time [s] for which the counts of subscribers hold: asking costs half of a small message."""
+
+
 class Publication:
     """One published topic."""
 
@@ -36,29 +40,27 @@ class Publication:
         self._source = source
         self._recording = recording
         self._encode = None
-        self._subscribers = 0
-        # what is latched goes to subscribers yet to come
-        self._latched = row.quality.durability == 'transient_local'
         self._publisher = node.create_publisher(
             interface(row.type_name), row.name, quality_of_service(row.quality, reliability),
             qos_overriding_options=QoSOverridingOptions.with_default_policies())
+        # what is latched goes to subscribers yet to come
+        self._latched = row.quality.durability == 'transient_local'
+        self._subscribers_before = 0
+        self.look()
 
     @property
     def topic(self):
         """Return the full name of the topic, after remapping."""
         return self._publisher.topic_name
 
-    @property
-    def heard(self):
+    def look(self):
+        """See who subscribes now."""
+        self._subscribers = self._publisher.get_subscription_count()
+        self.heard = self._latched or self._subscribers > 0
         """Whether publishing a message reaches anybody."""
-        return self._latched or self._publisher.get_subscription_count() > 0
 
-    def send(self, time, to_subscribers=True, to_recording=True):
-        """Make the message of simulated time `time` [ns] for whoever wants it."""
-        heard = to_subscribers and self.heard
-        recorded = to_recording and self._recording.wants(self.row)
-        if not heard and not recorded:
-            return
+    def send(self, time, heard, recorded):
+        """Make the message of simulated time `time` [ns] for subscribers, recording or both."""
         if self._encode is None:
             self._encode = self.row.encoder(self._source)
         data = self._encode(time)
@@ -79,7 +81,7 @@ class Publication:
 
     def has_new_subscriber(self):
         """Tell whether there are more subscribers than when this was last asked."""
-        before, self._subscribers = self._subscribers, self._publisher.get_subscription_count()
+        before, self._subscribers_before = self._subscribers_before, self._subscribers
         return self._subscribers > before
 
     def destroy(self, node):
@@ -90,12 +92,18 @@ class Publication:
 class Publications:
     """All published topics of a node."""
 
-    def __init__(self, node, source, recording, reliability):
-        """Create a publisher for every row that no parameter can turn off."""
+    def __init__(self, node, source, recording, reliability, now):
+        """
+        Create a publisher for every row that no parameter can turn off.
+
+        `now()` is the wall time [s].
+        """
         self._node = node
         self._source = source
         self._recording = recording
         self._reliability = reliability
+        self._now = now
+        self._look_due = float('-inf')
         self._publications = {}
         for row in PUBLISHED:
             if row.parameter is None:
@@ -125,43 +133,66 @@ class Publications:
             publication.destroy(self._node)
             self._sort()
 
+    def look(self):
+        """See who subscribes now; done by itself, but not with every message."""
+        for publication in self:
+            publication.look()
+        self._look_due = self._now() + LOOK_INTERVAL
+
     def send_state(self, time, collisions):
         """Publish what belongs to a state: the state, and the events since the last one."""
         self._source.collisions = collisions
-        self._send(EVERY_STEP, time)
+        self.send(EVERY_STEP, time)
         if len(collisions):
-            self._send(ON_EVENTS, time)
+            self.send(ON_EVENTS, time)
 
     def show_state(self, time):
         """Publish the state once more, to subscribers only: it is in the recording already."""
-        self._send(EVERY_STEP, time, to_recording=False)
+        self.send(EVERY_STEP, time, to_recording=False)
 
     def send_scene(self, time):
         """Publish what only changes with the scene, and make all encoders anew."""
         for publication in self:
             publication.forget_bodies()
-        self._send(ON_CHANGE, time)
+        self.send(ON_CHANGE, time)
 
     def record_scene(self, time):
         """Write to the recording what only changes with the scene: it has just been started."""
-        self._send(ON_CHANGE, time, to_subscribers=False)
+        self.send(ON_CHANGE, time, to_subscribers=False)
 
     def record_state(self, time):
         """Write the state to the recording alone, as it is."""
-        self._send(EVERY_STEP, time, to_subscribers=False)
+        self.send(EVERY_STEP, time, to_subscribers=False)
 
     def send_diagnostics(self, time, statuses):
         """Publish what is sent each second of wall time; `statuses()` is called if it is read."""
+        self.look()
         if any(publication.heard for publication in self.of(EVERY_SECOND)):
             self._source.statuses = statuses()
-            self._send(EVERY_SECOND, time)
+            self.send(EVERY_SECOND, time)
 
     def has_new_subscriber(self):
         """Tell whether somebody subscribed to a stream since this was last asked."""
+        self.look()
         # all are asked: each remembers that it was
         answers = [publication.has_new_subscriber()
                    for publication in (*self.of(EVERY_STEP), *self.of(FOR_DISPLAY))]
         return any(answers)
+
+    def send(self, when, time, to_subscribers=True, to_recording=True):
+        """
+        Make the messages of an occasion in `topics` at simulated time `time` [ns].
+
+        Those, that is, that a subscriber or the recording wants.
+        """
+        if self._now() >= self._look_due:
+            self.look()
+        recording = self._recording if to_recording and self._recording.active else None
+        for publication in self.of(when):
+            heard = to_subscribers and publication.heard
+            recorded = recording is not None and recording.wants(publication.row)
+            if heard or recorded:
+                publication.send(time, heard, recorded)
 
     def of(self, when):
         """Return the publications sent at one of the occasions in `topics`, as a list."""
@@ -171,7 +202,3 @@ class Publications:
         self._occasions = {}
         for publication in self:
             self._occasions.setdefault(publication.row.when, []).append(publication)
-
-    def _send(self, when, time, **to):
-        for publication in self.of(when):
-            publication.send(time, **to)

@@ -14,13 +14,15 @@
 
 """The state of bodies in flight at one time: what is not read is not evaluated."""
 
-from functools import cached_property
-
 from rigid_sim_ros.engine.state import State
 
 
 class FlightState(State):
-    """A `state.State` whose poses and velocities are evaluated when they are first read."""
+    """
+    A `state.State` whose poses and velocities are evaluated when they are first read.
+
+    They become attributes then, so that reading them again costs nothing.
+    """
 
     def __init__(self, flights, time, force, torque, work):
         self._flights = flights
@@ -29,31 +31,13 @@ class FlightState(State):
         self.force = force
         self.torque = torque
 
-    @cached_property
-    def _poses(self):
-        self._work.pose_evaluations += 1
-        return self._flights.poses(self._time)
-
-    @cached_property
-    def _velocities(self):
-        return self._flights.velocities(self._time)
-
-    @cached_property
-    def position(self):
-        """(3, n) [m]."""
-        return self._poses[0]
-
-    @cached_property
-    def orientation(self):
-        """(4, n)."""
-        return self._poses[1]
-
-    @cached_property
-    def linear_velocity(self):
-        """(3, n) [m/s]."""
-        return self._velocities[0]
-
-    @cached_property
-    def angular_velocity(self):
-        """(3, n) [rad/s]."""
-        return self._velocities[1]
+    def __getattr__(self, name):
+        """Evaluate what has not been read yet; called for attributes that are not there."""
+        if name in ('position', 'orientation'):
+            self._work.pose_evaluations += 1
+            self.position, self.orientation = self._flights.poses(self._time)
+        elif name in ('linear_velocity', 'angular_velocity'):
+            self.linear_velocity, self.angular_velocity = self._flights.velocities(self._time)
+        else:
+            raise AttributeError(f'a state has no {name!r}')
+        return self.__dict__[name]
