@@ -21,12 +21,17 @@ import sys
 import numpy as np
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.bodies import bodies_of
+from rigid_sim_ros.messages import MessageError
 from rigid_sim_ros.messages.collisions import KIND_NAMES
 from rigid_sim_ros.recording import Bag, read, RecordingError
+from rigid_sim_ros.recording.journal import ADD, decode_journal, PLACE, REMOVE, RESET
 from rigid_sim_ros.scene import load_scene, SceneError
 
-_MOST_COLLISIONS = 40
+_MOST_COLLISIONS = 10
 """Rows of the table of collisions, unless --all is given."""
+
+_EVENTS = {RESET: 'resets', ADD: 'bodies added', REMOVE: 'removed', PLACE: 'placed'}
+"""Lines of the journal that are counted, and what they are called."""
 
 
 def main(arguments=None):
@@ -64,10 +69,24 @@ def _overview(recording):
     for name in ('method', 'max_step', 'version'):
         if name in recording.options:
             yield f'{name:<12}{recording.options[name]}'
-    commands = Counter(command.topic for command in recording.commands)
-    yield f'commands    {sum(commands.values())}'
+    events = Counter(map(_event, recording.commands))
+    yield f'commands    {events[None]}'
+    changes = ', '.join(f'{what} {events[event]}' for event, what in _EVENTS.items()
+                        if events[event])
+    if changes:
+        yield f'changes     {changes}'
     for line in recording.damage:
         yield f'damaged     {line}'
+
+
+def _event(message):
+    """Return which line of the journal a message is; None for a command."""
+    if not message.topic.endswith('/journal'):
+        return None
+    try:
+        return decode_journal(message.data)['event']
+    except MessageError:
+        return 'unreadable'
 
 
 def _topics(path):
@@ -101,6 +120,8 @@ def _conserved(recording):
         return
     bodies = bodies_of(scene)
     if bodies.names[:bodies.moving_count] != recording.names:
+        yield ''
+        yield 'no energy and momentum: bodies were added or removed'
         return
     values = _totals(bodies, np.array(scene.gravity), recording, known)
     # the first state of the run that each state belongs to

@@ -116,9 +116,19 @@ def _compare(resimulation, duration):
 
 def _deviate(resimulation, duration, options):
     deviations = Deviations()
-    for pair in _with_progress(resimulation, duration):
-        if pair.kind == POSES:
-            deviations.add(pair, resimulation.names)
+    try:
+        for pair in _with_progress(resimulation, duration):
+            if pair.kind == POSES:
+                deviations.add(pair, resimulation.names)
+    except RecordingError:
+        if deviations.distances:
+            _report(deviations, resimulation, options)
+        raise
+    _report(deviations, resimulation, options)
+    return DIFFERENT if deviations.found else IDENTICAL
+
+
+def _report(deviations, resimulation, options):
     for line in deviations.report():
         print(line)
     path = options.plot or os.path.abspath(options.bag) + '_deviations.png'
@@ -129,7 +139,6 @@ def _deviate(resimulation, duration, options):
     else:
         print(f'plot: {path}')
     _tell_damage(resimulation)
-    return DIFFERENT if deviations.found else IDENTICAL
 
 
 def _tell_damage(resimulation):

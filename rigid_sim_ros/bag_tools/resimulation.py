@@ -25,6 +25,7 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.linalg import LinAlgError
 from rigid_sim_ros import topics
 from rigid_sim_ros.engine import CommandError, Simulation
 from rigid_sim_ros.messages import decode_pose_array, MessageError
@@ -143,7 +144,7 @@ class Resimulation:
             if event.topic:
                 self._take(event.topic.rpartition('/')[2], event)
             else:
-                self._session.advance_to(event.time_ns)
+                self._advance_to(event.time_ns)
                 self.on_progress(event.time_ns)
 
     def _scene_and_options(self):
@@ -165,7 +166,7 @@ class Resimulation:
                 self._lines.get(line['event'], _for_readers)(line)
             elif kind in self._readers:
                 self._carry_out(self._readers[kind](message.data)[1], message.time_ns)
-        except (MessageError, Refused, CommandError, SceneError) as error:
+        except (MessageError, Refused, CommandError, SceneError, ArithmeticError) as error:
             text = error.describe() if isinstance(error, Refused) else error
             raise RecordingError(f'{message.topic} at {message.time_ns / 1e9:.9f} s cannot be '
                                  f'carried out again: {text}') from error
@@ -197,10 +198,17 @@ class Resimulation:
         self._session.place(line['name'], *(line[field] for field in (
             'position', 'orientation', 'velocity', 'angular_velocity')))
 
+    def _advance_to(self, time_ns):
+        try:
+            self._session.advance_to(time_ns)
+        except (ArithmeticError, LinAlgError) as error:
+            raise RecordingError(f'{self._bag.path} cannot be simulated again beyond '
+                                 f'{self._session.time / 1e9:.9f} s: {error}') from error
+
     def _compared(self, kind, message):
         session = self._session
         if message.time_ns > session.time:
-            session.advance_to(message.time_ns)
+            self._advance_to(message.time_ns)
         elif message.time_ns < session.time:
             raise RecordingError(
                 f'{self._bag.path}: time goes back from {session.time / 1e9:.9f} s to '

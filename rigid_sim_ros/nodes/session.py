@@ -181,7 +181,22 @@ class Session:
         # from the difference to the simulation's own clock, so that rounding does not add up
         target = (time - self._origin) / NANOSECONDS
         self.simulation.advance(max(0.0, target - self.simulation.time))
+        if self.simulation.method != 'exact':
+            # that one raises errors of its own, and its poses are not evaluated for nothing
+            self._check_finite(time)
         self._time = time
+
+    def _check_finite(self, time):
+        """Raise FloatingPointError if a state has numbers that are none."""
+        simulation = self.simulation
+        for what in ('position', 'orientation', 'linear_velocity', 'angular_velocity'):
+            finite = np.isfinite(getattr(simulation, what))
+            if not finite.all():
+                name = simulation.names[int(np.argmin(finite.all(axis=1)))]
+                raise FloatingPointError(
+                    f'the {what.replace("_", " ")} of {name} is no number any more at '
+                    f'{time / NANOSECONDS:.9g} s; method {simulation.method!r} with max_step '
+                    f'{simulation.max_step:g} s cannot follow this motion')
 
 
 def _line_of_added(body):

@@ -186,7 +186,7 @@ class StandardServices:
     def delete_entity(self, request, response):
         """Take a body out."""
         return self._do(response, self._entity_result,
-                            lambda: self._node.entities.delete(request.entity))
+                        lambda: self._node.entities.delete(request.entity))
 
     # -- inside --------------------------------------------------------------------------------
 

@@ -132,6 +132,39 @@ def test_bouncing_with_the_baseline_method_is_identical_collisions_too(tmp_path,
     assert 'ball, ground' in capsys.readouterr().out
 
 
+BLOW_UP = """
+material: {restitution: 1.0, friction: 0.0}
+planes: [{name: ground}]
+bodies:
+  - {name: a, cube: {edge: 0.2}, mass: 1.0, position: [0, 0, 3], force: [0, 0, -1.0e+8]}
+"""
+
+
+def test_a_state_that_is_no_number_ends_the_run_and_is_not_recorded(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag', BLOW_UP, 'report') as run:
+        with np.errstate(all='ignore'), pytest.raises(
+                FloatingPointError, match="of a is no number any more at .*'report'"):
+            run.advance(1000)
+        last = run.session.time
+    recorded = read(tmp_path / 'bag')
+    assert recorded.time_ns[-1] == last > 0
+    assert np.isfinite(recorded.position).all() and np.isfinite(recorded.orientation).all()
+    assert replay.main([str(tmp_path / 'bag')]) == 0
+    assert capsys.readouterr().out.startswith('identical: ')
+
+
+def test_settings_that_cannot_follow_a_run_are_one_line_after_what_they_could(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag', BLOW_UP, 'exact') as run:
+        run.advance(100)
+    plot = tmp_path / 'plot.png'
+    with np.errstate(all='ignore'):
+        assert replay.main([str(tmp_path / 'bag'), '--with', 'method=report',
+                            '--plot', str(plot)]) == 2
+    output = capsys.readouterr()
+    assert output.out.startswith('position: largest deviation ')
+    assert 'cannot be simulated again beyond ' in output.err.splitlines()[-1]
+
+
 CROWD = """
 gravity: [0, 0, 0]
 material: {restitution: 1.0, friction: 0.0}
@@ -225,6 +258,26 @@ def test_info_tells_topics_and_what_is_conserved(tmp_path, capsys):
     assert change < 1e-15
     start = float(next(line for line in lines if line.startswith('angular')).split()[2])
     assert start == pytest.approx(0.04 / 6 * np.sqrt(14), rel=1e-8)
+
+
+def test_info_shows_some_collisions_and_counts_the_rest(tmp_path, capsys):
+    scene = CROWD.replace('0.5 *', '0.21 *')
+    with Recorded(tmp_path / 'bag', scene) as run:
+        run.advance(300)
+        run.write('~/journal', encode_reset(False))
+        run.session.reset(False)
+    count = len(read(tmp_path / 'bag').collisions)
+    assert count >= 12
+    rows = {}
+    for arguments in ((), ('--all',)):
+        assert info.main([str(tmp_path / 'bag'), *arguments]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        rows[arguments] = sum(' impact ' in line and ', ball_' in line for line in lines)
+        assert 'changes     resets 1' in lines
+        assert 'commands    0' in lines
+        if not arguments:
+            assert lines[-1] == f'... and {count - 10} more; --all lists them'
+    assert list(rows.values()) == [10, count]
 
 
 @pytest.mark.parametrize('program', [info, recover, replay])
