@@ -74,6 +74,12 @@ class FixedAxisRotations:
         self._table[GROWTH, bodies] = growth * axis
         self._grows = self._grows or bool(growth.any())
 
+    def hold(self, bodies, quaternion, rate):
+        """Let bodies (k,) have orientations (4, k) and rates (3, k) that do not change."""
+        self._table[:, bodies] = 0.0
+        self._table[COSINE, bodies] = quaternion
+        self._table[RATE, bodies] = rate
+
     def orientations(self, elapsed, indices, out):
         """Write the quaternions of bodies (k,), a slice or None for all, to `out` (4, k)."""
         if indices is None:

@@ -98,6 +98,19 @@ class Flights:
                                 angular_velocity[:, chosen], torque[:, chosen])
         self._note_present()
 
+    def hold(self, indices, time, position, orientation, linear_velocity, angular_velocity,
+             acceleration):
+        """
+        Keep the state at `time` [s] of bodies (k,) that are not in flight, to the last bit.
+
+        Arguments as for `begin`. What is asked for at other times than this is not their motion.
+        """
+        self._translations.begin(indices, time, position, linear_velocity, acceleration)
+        self._fixed_axis.hold(indices, orientation, angular_velocity)
+        if self._present:
+            self._leave(indices, np.full(len(indices), FIXED_AXIS))
+            self._note_present()
+
     def poses(self, time, indices=None):
         """
         Return positions (3, k) [m] and unit quaternions (4, k) at `time` [s].

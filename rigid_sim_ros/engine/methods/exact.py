@@ -140,8 +140,12 @@ class Exact:
         """Step these bodies (k,) to `end` [s], and see who parts and who comes to rest."""
         state = self.state
         parting, resting = self._islands.advance(members, self.time, end, state)
-        self._begin(members, end, state)
+        self._flights.hold(
+            members, end, state.position[:, members], state.orientation[:, members],
+            state.linear_velocity[:, members], state.angular_velocity[:, members],
+            self._acceleration[:, members])
         if len(parting):
+            self._begin(parting, end, state)
             self._encounters.fly(parting, end)
         if len(resting):
             self._lay_down(resting, end)

@@ -23,7 +23,7 @@ import pytest
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
-from rigid_sim_ros.engine.lasting_contact.automaton.forces import contact_forces
+from rigid_sim_ros.engine.lasting_contact.automaton.forces import general_forces
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import PlaneBody
 from rigid_sim_ros.engine.model import Plane
@@ -236,6 +236,7 @@ def test_forces_of_patterns_are_those_of_the_general_solver():
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.4, 0.4) for z in (-0.3, 0.3)]
     for spin, slips in (((0.0, 0.0, 0.0), [None] * 4),
                         ((0.0, 0.0, 1.0), [(0.6, 0.8), (0.8, -0.6), (1.0, 0.0), (0.0, -1.0)]),
+                        ((0.0, 0.0, 1.0), [None, (0.8, 0.6), (-0.8, 0.6), (0.0, -1.0)]),
                         ((0.0, 0.7, 0.0), [None] * 2)):
         plate = PlaneBody(corners, np.sqrt(0.5), 1 / 1.7, (0.4, 0.5, 0.6), (0.2, 0.1, -GRAVITY),
                           (0.1, -0.2, 0.05), 0.5)
@@ -248,7 +249,7 @@ def test_forces_of_patterns_are_those_of_the_general_solver():
         forces, linear, turning = constrained(plate, state, turn, points, arms, slips,
                                               plate.acceleration, angular)
         free = plate.accelerations(state, arms, plate.acceleration, angular)
-        expected = contact_forces(plate, turn, arms, free, slips)
+        expected = general_forces(plate, turn, arms, free, slips)
         np.testing.assert_allclose(forces, expected, atol=1e-9)
         left = plate.accelerations(state, arms, linear, turning)
         np.testing.assert_allclose([motion[2] for motion in left], 0, atol=1e-12)
@@ -263,6 +264,6 @@ def test_order_of_dormand_prince():
     for size in (0.4, 0.2):
         step = Step(rates, [1.0, 0.0], rates([1.0, 0.0]), size)
         ends.append(abs(step.end[0] - np.cos(size)))
-        middles.append(abs(step.interpolant()(0.3 * size)[0] - np.cos(0.3 * size)))
+        middles.append(abs(step.between(0.3 * size)[0] - np.cos(0.3 * size)))
     assert np.log2(ends[0] / ends[1]) > 5.8
     assert np.log2(middles[0] / middles[1]) > 4.8

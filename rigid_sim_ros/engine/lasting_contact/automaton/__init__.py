@@ -74,8 +74,11 @@ class OnPlane:
             x, y, z = bodies.half_extents[:, 0].tolist()
             self._corners = [(a * x, b * y, c * z) for a in (-1, 1) for b in (-1, 1)
                              for c in (-1, 1)]
-        self._last = None
-        """The end of the last call: its state, and the points closed in it."""
+        self._automaton = None
+        self._began = 0.0
+        """When it did [s]."""
+        self._left = None
+        """What the last call left the body with: its columns of the quantities of a state."""
 
     def advance(self, state, start, duration):
         """
@@ -84,22 +87,37 @@ class OnPlane:
         Returns (closed contacts in columns of the island, resting) and puts the body's columns
         into the `State`; or returns None and leaves all as it was, if there are too many events.
         """
-        numbers = self._numbers(state)
-        closed = self._last[1] if self._last is not None and self._last[0] == numbers else None
-        body = self._body(state)
-        scales = Scales(self._radius, dot(body.acceleration, body.acceleration) ** 0.5)
-        automaton = Automaton(body, numbers, closed, scales, units.STICK * scales.speed,
-                              self._restitution, self._island.world.impact_law)
-        if not automaton.advance(duration):
+        if self._automaton is None or self._columns(state) != self._left:
+            # somebody else has moved the body or changed the forces on it
+            self._automaton, self._began = self._begun(state), start
+        automaton = self._automaton
+        if not automaton.advance(start + duration - self._began):
+            self._automaton = None
             return None
+        scales = automaton.scales
         resting = automaton.resting(units.REST * scales.speed,
                                     units.EQUILIBRIUM * scales.acceleration)
+        numbers = automaton.now
         if resting:
-            automaton.state[7:] = [0.0] * 6
-        self._note(automaton.hits, start)
-        self._put(automaton.state, state)
-        self._last = self._numbers(state), set(automaton.closed)
+            self._automaton, numbers = None, [*numbers[:7], *[0.0] * 6]
+        self._note(automaton.take_hits())
+        self._put(numbers, state)
+        self._left = self._columns(state)
         return self._contacts(automaton), resting
+
+    def _begun(self, state):
+        """Return an `Automaton` that begins in a `State`."""
+        body = self._body(state)
+        scales = Scales(self._radius, dot(body.acceleration, body.acceleration) ** 0.5)
+        return Automaton(body, self._numbers(state), None, scales, units.STICK * scales.speed,
+                         self._restitution, self._island.world.impact_law)
+
+    def _columns(self, state):
+        """Return the body's columns of a `State`, forces included, as lists."""
+        member = self._member
+        return [values[:, member].tolist() for values in (
+            state.position, state.orientation, state.linear_velocity, state.angular_velocity,
+            state.force, state.torque)]
 
     # -- frames --------------------------------------------------------------------------------
 
@@ -146,8 +164,8 @@ class OnPlane:
 
     # -- what others want to know --------------------------------------------------------------
 
-    def _note(self, hits, start):
-        """Note the impacts of an automaton as events."""
+    def _note(self, hits):
+        """Note the impacts of the automaton as events."""
         island = self._island
         work = island.world.work
         normal = -island.bodies.plane_normal[:, self._plane]
@@ -159,12 +177,12 @@ class OnPlane:
         for hit in hits:
             x, y, z = hit.point
             island.world.events.append(
-                start + hit.time, a, b, IMPACT, self._to_world((x, y, z + self._offset)), normal,
+                self._began + hit.time, a, b, IMPACT, self._to_world((x, y, z + self._offset)), normal,
                 sign * np.array(self._to_world(hit.impulse)), hit.speed)
 
     def _contacts(self, automaton):
         """Return the closed contacts, in columns of the island."""
-        body, closed, numbers = automaton.body, automaton.closed, automaton.state
+        body, closed, numbers = automaton.body, automaton.closed, automaton.now
         count = len(closed)
         if not count:
             return Contacts.none()

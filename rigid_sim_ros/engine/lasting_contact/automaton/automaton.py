@@ -29,11 +29,14 @@ from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized
 TOLERANCE = 1e-8
 """Of length, speed and angle: the error allowed in a step."""
 
+PIVOTING = 1e-3
+"""How much of that where nothing slides: what tips about a point or an edge lets errors grow."""
+
 BALANCE = 1e-12
 """Of the acceleration scale: what is no more than the rounding of forces in balance."""
 
-LONGEST = 0.02
-"""Longest step [s], times the root of the length in metres."""
+LONGEST = 0.05
+"""Longest step [s], times the root of the length in metres: what happens within is looked for."""
 
 LANDED = 1e-12
 """Of the length scale: how near to the plane a point is that touches it."""
@@ -41,69 +44,96 @@ LANDED = 1e-12
 _CORRECTIONS = 5
 
 MOST_STEPS = 1000
-"""In one call; more are not worth it."""
+"""Between two readings; more are not worth it."""
 
 
 class Automaton(ContactState):
-    """A body in motion; arguments as for `ContactState`."""
+    """
+    A body in motion; arguments as for `ContactState`.
+
+    It goes its own steps, as long as its motion allows, and ahead of the times that are asked for:
+    between them lies a polynomial.
+    """
 
     def __init__(self, body, state, closed, scales, stick, restitution, law):
         """See the class."""
         super().__init__(body, state, closed, scales, stick, restitution, law)
         self.steps = 0
-        self._longest = LONGEST * scales.length ** 0.5
+        """Steps tried since it was last asked for anything."""
+        self.now = self.state
+        """The state at the time that was last asked for."""
+        self._longest = self._size = LONGEST * scales.length ** 0.5
         rate = scales.speed / scales.length
         self._weights = [1 / (TOLERANCE * unit) for unit in (
             *[scales.length] * 3, *[1.0] * 4, *[scales.speed] * 3, *[rate] * 3)]
+        self._rates = self.begin()
+        self._ahead = None
 
-    def advance(self, duration):
-        """Advance by `duration` [s]; return whether all of it was done."""
-        size = self._longest
-        rates = self.begin()
-        still = BALANCE * self.scales.acceleration
-        while (left := duration - self.time) > 1e-13 * duration:
-            if self.steps > MOST_STEPS:
-                return False
-            if not any(self.state[7:]) and self._balanced(rates, still):
-                self.time = duration
-                break
-            step, event, size = self._step(rates, min(size, left))
-            # the end is met exactly, not by adding up
-            self.time = duration if step.size == left else self.time + step.size
-            self.state = normalized(step.end)
-            rates = step.last
-            self.rearm()
-            if event is not None:
-                event()
-                rates = self.begin()
-            elif self.lifting() or self.drifting():
-                rates = self.begin()
-        return True
+    def advance(self, until):
+        """Advance to a time [s] since it was made; return whether few enough steps did it."""
+        self.steps = 0
+        while self.steps <= MOST_STEPS:
+            if self._ahead is None:
+                if self._stays():
+                    self.time, self.now = until, self.state
+                    return True
+                self._ahead = self._next_step()
+            step = self._ahead[0]
+            if self.time + step.size > until:
+                self.now = normalized(step.between(until - self.time))
+                return True
+            self._take(*self._ahead)
+            self._ahead = None
+        return False
 
     def resting(self, slow, allowed):
         """
-        Return whether the body is at rest.
+        Return whether the body is at rest now.
 
         That is: no point moves faster than `slow` [m/s], and without that motion none would be
         accelerated by more than `allowed` [m/s^2]. What turns at its turning point is not.
         """
-        vx, vy, vz, wx, wy, wz = map(abs, self.state[7:])
+        vx, vy, vz, wx, wy, wz = map(abs, self.now[7:])
         if max(vx, vy, vz, self.body.radius * max(wx, wy, wz)) > slow or not self.closed:
             return False
-        return self._balanced(self.rates([*self.state[:7], *[0.0] * 6]), allowed)
+        return self._balanced(self.rates([*self.now[:7], *[0.0] * 6]), allowed)
+
+    def _stays(self):
+        """Return whether the body does not move, nor will."""
+        return not any(self.state[7:]) and self._balanced(
+            self._rates, BALANCE * self.scales.acceleration)
 
     def _balanced(self, rates, allowed):
         """Return whether the accelerations [m/s^2] in the rates are no more than allowed."""
         return (max(map(abs, rates[7:10])) <= allowed
                 and self.body.radius * max(map(abs, rates[10:])) <= allowed)
 
+    def _next_step(self):
+        """Return (step, event at its end or None, what is solved there)."""
+        step, event, self._size = self._step(self._rates, self._size)
+        return step, event, self.solved
+
+    def _take(self, step, event, solved):
+        """Go to the end of a step and do what happens there."""
+        self.time += step.size
+        self.state = normalized(step.end)
+        self._rates, self.solved = step.last, solved
+        self.rearm()
+        if event is not None:
+            event()
+            self._rates = self.begin()
+        elif self.lifting() or self.drifting():
+            self._rates = self.begin()
+
     def _step(self, rates, size):
         """Return (step, event at its end or None, size of the next) of at most `size` [s]."""
         started = self.solved
+        slips = started[2]
+        allowed = 1.0 if any(slips) or not self.closed else PIVOTING
         while True:
             self.steps += 1
             step = Step(self.rates, self.state, rates, size)
-            error = max(map(_weighted, step.error(), self._weights))
+            error = max(map(_weighted, step.error(), self._weights)) / allowed
             if error > 1.0 and self.steps <= MOST_STEPS:
                 size *= max(0.2, 0.9 * error ** -0.2)
                 continue

@@ -44,14 +44,14 @@ DRIFT = 1e-12
 """Of length and speed: what is put back onto the plane."""
 
 MANY_IMPACTS = 25
-"""Impacts in one call after which slow sliding is stopped: corners may trade slips for ever."""
+"""Impacts between two readings after which slow sliding is stopped: corners may trade slips for ever."""
 
 
 class Hit:
     """An impact of one point, for the log; vectors are in the plane's frame."""
 
     def __init__(self, time, point, impulse, speed):
-        """Hold a time since the start of the call [s], a place, an impulse and the approach."""
+        """Hold a time of the automaton [s], a place, an impulse and the speed of approach."""
         self.time = time
         self.point = point
         self.impulse = impulse
@@ -85,7 +85,7 @@ class ContactState:
         self.hits = []
         self.scales = scales
         self._stick = stick
-        self._slip = SLIP * scales.speed
+        self._least_slip = self._slip = SLIP * scales.speed
         self._restitution, self._law = restitution, law
         self._impacts = 0
         gaps = body.gaps(self.state)
@@ -96,6 +96,13 @@ class ContactState:
             self.closed = sorted(closed)
         elif low:
             self.land()
+
+    def take_hits(self):
+        """Return the impacts since this was last called, each a `Hit`; their count begins anew."""
+        hits, self.hits = self.hits, []
+        self._impacts = 0
+        self._slip = self._least_slip
+        return hits
 
     # -- motion --------------------------------------------------------------------------------
 

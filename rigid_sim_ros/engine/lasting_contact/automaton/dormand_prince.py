@@ -20,6 +20,8 @@ of order 4 is that of Hairer, Norsett and Wanner 1993, section II.6. Plain lists
 faster than arrays for the thirteen numbers of a rigid body.
 """
 
+from functools import cached_property
+
 _A = (
     (1 / 5,),
     (3 / 40, 9 / 40),
@@ -68,8 +70,9 @@ class Step:
         return [h * (_E1 * a + _E3 * c + _E4 * d + _E5 * e + _E6 * f + _E7 * g)
                 for a, c, d, e, f, g in zip(*self._stages)]
 
-    def interpolant(self):
-        """Return a function of the time since the start that gives the state there."""
+    @cached_property
+    def between(self):
+        """A function of the time since the start that gives the state there."""
         h = self.size
         rows = []
         for y, z, a, c, d, e, f, g in zip(self.start, self.end, *self._stages):

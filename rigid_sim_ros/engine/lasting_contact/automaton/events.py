@@ -41,12 +41,10 @@ def first(automaton, started, step):
     automaton had solved at the start of the step.
     """
     found = []
-    between = None
     for point, end in _touching(automaton, step):
-        between = between or step.interpolant()
         level = automaton.level(point)
         found.append((_crossing(
-            lambda time, point=point: automaton.body.gaps(between(time))[point] - level, end),
+            lambda time, point=point: automaton.body.gaps(step.between(time))[point] - level, end),
             automaton.land, point))
     for which, point, direction in _stopping(automaton, started):
         if direction is None:
@@ -55,13 +53,12 @@ def first(automaton, started, step):
         if dot((*direction, 0.0), velocity) > 0.0:
             found.append((step.size, automaton.settle, None))
             continue
-        between = between or step.interpolant()
 
         def along(time, point=point, direction=direction):
-            return dot((*direction, 0.0), velocity_of(automaton.body, between(time), point))
+            return dot((*direction, 0.0), velocity_of(automaton.body, step.between(time), point))
 
         time = _crossing(along, step.size)
-        x, y, _ = velocity_of(automaton.body, between(time), point)
+        x, y, _ = velocity_of(automaton.body, step.between(time), point)
         if not automaton.slow(hypot(x, y)):
             return step.size, None, None, True
         found.append((time, automaton.settle, None))
@@ -91,7 +88,7 @@ def _touching(automaton, step):
         elif min(before[point], after[point]) < reach:
             time = _lowest(body, step, point, before[point], after[point])
             if time is not None and body.gaps(
-                    step.interpolant()(time))[point] < automaton.level(point):
+                    step.between(time))[point] < automaton.level(point):
                 found.append((point, time))
     return found
 

@@ -19,7 +19,8 @@ Which points stick and which slide along known directions is tried first: one sm
 for the forces as unknowns, in as many columns as there are independent ones, so that the choice
 among redundant forces is the canonical one (`solvers.canonical`):
 
-- all sliding, four corners: pressure c0 + c1 x + c2 y, three unknowns;
+- four corners, all sliding: pressure c0 + c1 x + c2 y, three unknowns; two more if one of them
+  sticks;
 - two sticking corners: equal friction along the line between them, five unknowns;
 - otherwise what a point has, one unknown if it slides and three if it sticks.
 
@@ -64,7 +65,7 @@ def contact_forces(body, turn, arms, free, slips):
     forces = _guessed(body, turn, arms, free, slips)
     if forces is not None and _allowed(body, forces, slips):
         return forces
-    return _general(body, turn, arms, free, slips)
+    return general_forces(body, turn, arms, free, slips)
 
 
 def accelerations(body, turn, arms, forces):
@@ -108,7 +109,7 @@ def _guessed(body, turn, arms, free, slips):
     """Return the forces if all points are closed and do what `slips` says, or None."""
     count = len(arms)
     sticking = sum(slip is None for slip in slips)
-    if sticking == 0 and count > 3:
+    if sticking < 2 and count > 3:
         columns, rows = _affine_columns(body, arms, slips)
     elif sticking == 2 and count == 2:
         columns, rows = _edge_columns(arms)
@@ -167,8 +168,12 @@ def _sliding(body, slip):
 
 
 def _affine_columns(body, arms, slips):
-    """Return columns and rows for four sliding corners of a face: pressure c0 + c1 x + c2 y."""
-    forces = [_sliding(body, slip) for slip in slips]
+    """
+    Return columns and rows for four corners of a face: pressure c0 + c1 x + c2 y.
+
+    All slide, or all but one about which the face turns; that has friction of its own.
+    """
+    forces = [_AXES[0] if slip is None else _sliding(body, slip) for slip in slips]
     middle_x = sum(arm[0] for arm in arms) / len(arms)
     middle_y = sum(arm[1] for arm in arms) / len(arms)
     columns = [list(enumerate(forces))]
@@ -176,7 +181,12 @@ def _affine_columns(body, arms, slips):
         weights = [arm[axis] - middle for arm in arms]
         columns.append([(point, (w * f[0], w * f[1], w * f[2]))
                         for point, (w, f) in enumerate(zip(weights, forces))])
-    return columns, [(point, _AXES[0]) for point in range(3)]
+    rows = [(point, _AXES[0]) for point in range(3)]
+    if None in slips:
+        pivot = slips.index(None)
+        columns += [[(pivot, axis)] for axis in _AXES[1:]]
+        rows += [(pivot, axis) for axis in _AXES[1:]]
+    return columns, rows
 
 
 def _edge_columns(arms):
@@ -241,7 +251,7 @@ def vectors_of(rows):
     return list(zip(first, second, normal))
 
 
-def _general(body, turn, arms, free, slips):
+def general_forces(body, turn, arms, free, slips):
     """Return the forces by the general solver, which takes anything."""
     count = len(arms)
     known = np.array([slip or (0.0, 0.0) for slip in slips]).T
