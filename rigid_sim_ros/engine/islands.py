@@ -31,6 +31,9 @@ from rigid_sim_ros.engine.lasting_contact import advance_island, Island
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
 
+SPARE_STEPS = 4
+"""Pairs are looked for that may meet in so many steps: until one does, islands stay as they are."""
+
 REACH_FACTOR = 2.0
 """
 How much faster than now a body may be after an impact within a step: what could meet at this speed
@@ -85,7 +88,7 @@ class Islands:
         self._islands = []
         self._members = np.zeros(0, dtype=int)
         """(k,): the bodies in these islands."""
-        self._skin = 0.0
+        self._spare = 0.0
         """How far they may still come nearer to anything [m] before islands are made again."""
         self._pairs = LastingPairs(world)
 
@@ -131,6 +134,8 @@ class Islands:
         gap = separations(bodies, a, b, state.position, state.orientation)
         near = gap < reach[a] + reach[b] + CLOSED * bodies.bounding_radius[a]
         there = np.where(self.touching[a], b, a)[near]
+        if not there.size:
+            return nobody, nobody
         sleeps = self.asleep[there]
         return np.unique(there[~sleeps]), np.unique(there[sleeps])
 
@@ -161,35 +166,44 @@ class Islands:
         """Return the islands of these bodies (k,), made again if they may not be complete."""
         reach = self._reach(state, start, end)
         motion = 2 * reach[members].max()
-        self._skin -= motion
-        if self._skin < 0 or not np.array_equal(members, self._members):
-            skin = SKIN * self._world.bodies.bounding_radius[members].min()
-            skin = skin if skin > SKIN_STEPS * motion else 0.0
-            self._members, self._skin = members, skin - motion
-            self._islands = self._found(members, state, reach, skin)
+        self._spare -= motion
+        if self._spare < 0 or not np.array_equal(members, self._members):
+            self._members = members
+            self._islands, spare = self._found(members, state, reach, motion)
+            self._spare = spare - motion
         return self._islands
 
-    def _found(self, members, state, reach, skin):
-        """Return the islands of bodies (k,) that come nearer to each other than `skin` [m]."""
+    def _found(self, members, state, reach, motion):
+        """
+        Return the islands of bodies (k,), and how far [m] any may move until there are others.
+
+        `reach` (n,) [m] is how far each may come in this step, `motion` [m] the most of two.
+        """
         bodies = self._world.bodies
         is_member = np.zeros(bodies.count, dtype=bool)
         is_member[members] = True
         solid = is_member.copy()
         solid[:bodies.moving_count] |= self.asleep
         solid[bodies.moving_count:] = True
-        a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + skin)
+        skin = SKIN * bodies.bounding_radius[members].min()
+        skin = skin if skin > SKIN_STEPS * motion else 0.0
+        crowd = len(members) > CROWD
+        margin = skin if crowd else max(skin, SPARE_STEPS * motion)
+        a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + margin)
         ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
-        a, b = _within(bodies, state.position, a[ours], b[ours], reach + 0.5 * skin)
-        if len(members) > CROWD:
-            return [self._island(members, a, b)]
-        gap = separations(bodies, a, b, state.position, state.orientation)
-        near = gap <= reach[a] + reach[b] + skin
+        a, b = _within(bodies, state.position, a[ours], b[ours], reach + 0.5 * margin)
+        if crowd:
+            return [self._island(members, a, b)], margin
+        gap = separations(bodies, a, b, state.position, state.orientation) - reach[a] - reach[b]
+        near = gap <= skin
         a, b = a[near], b[near]
         both = is_member[a] & is_member[b]
         labels = _with_the_many(component_labels(bodies.count, a[both], b[both]), members)
         of_pair, of_member = labels[np.where(is_member[a], a, b)], labels[members]
-        return [self._island(members[of_member == label], a[of_pair == label],
-                             b[of_pair == label]) for label in np.unique(of_member)]
+        islands = [self._island(members[of_member == label], a[of_pair == label],
+                                b[of_pair == label])
+                   for label in sorted({*of_member.tolist()})]
+        return islands, float(gap[~near].min(initial=margin))
 
     def _island(self, members, body_a, body_b):
         """Return the island there was of these members (m,) and pairs (p,), or a new one."""
@@ -227,11 +241,11 @@ def _with_the_many(labels, members):
 
     One pile of all of them costs less than as many islands.
     """
-    found, sizes = np.unique(labels[members], return_counts=True)
-    several = found[sizes > 1]
+    sizes = np.bincount(labels[members], minlength=len(labels))
     if sizes[sizes > 1].sum() <= FEW_TOGETHER:
         return labels
-    return np.where(np.isin(labels, several), several[0], labels)
+    several = sizes[labels] > 1
+    return np.where(several, labels[several][0], labels)
 
 
 def _groups(island, contacts):

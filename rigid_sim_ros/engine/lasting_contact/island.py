@@ -57,7 +57,7 @@ class Island:
         others = np.setdiff1d(np.concatenate((pairs_a, pairs_b)), members)
         self.columns = np.concatenate((self.members, others)).astype(int)
         self.bodies = _own_bodies(world.bodies, self.columns, len(self.members))
-        self._keys = pairs_a * world.bodies.count + pairs_b
+        self._keys = frozenset((pairs_a * world.bodies.count + pairs_b).tolist())
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
@@ -79,7 +79,7 @@ class Island:
 
     def covers(self, pairs_a, pairs_b):
         """Return whether all these pairs (p,), as for the constructor, are looked after."""
-        return bool(np.isin(pairs_a * self.world.bodies.count + pairs_b, self._keys).all())
+        return self._keys.issuperset((pairs_a * self.world.bodies.count + pairs_b).tolist())
 
     def others(self, moving_count):
         """Return which of the scene's first `moving_count` bodies it takes for fixed, (k,) int."""
