@@ -237,13 +237,14 @@ def test_forces_of_patterns_are_those_of_the_general_solver():
     for spin, slips in (((0.0, 0.0, 0.0), [None] * 4),
                         ((0.0, 0.0, 1.0), [(0.6, 0.8), (0.8, -0.6), (1.0, 0.0), (0.0, -1.0)]),
                         ((0.0, 0.0, 1.0), [None, (0.8, 0.6), (-0.8, 0.6), (0.0, -1.0)]),
-                        ((0.0, 0.7, 0.0), [None] * 2)):
+                        ((0.0, 0.7, 0.0), [None] * 2),
+                        ((0.3, 0.7, 0.2), [(0.6, 0.8), (0.8, -0.6)]),
+                        ((0.3, 0.7, 0.2), [(0.6, 0.8)])):
         plate = PlaneBody(corners, np.sqrt(0.5), 1 / 1.7, (0.4, 0.5, 0.6), (0.2, 0.1, -GRAVITY),
                           (0.1, -0.2, 0.05), 0.5)
         state = [0, 0, 0.3, 0, 0, 0, 1, 0, 0, 0, *spin]
         turn = plate.turn(state)
-        points = [point for point, corner in enumerate(corners)
-                  if corner[2] < 0 and (len(slips) == 4 or corner[0] < 0)]
+        points = [point for point, corner in enumerate(corners) if corner[2] < 0][:len(slips)]
         arms = plate.arms(turn, points)
         angular = plate.free_turning(state, turn)
         forces, linear, turning = constrained(plate, state, turn, points, arms, slips,

@@ -21,7 +21,7 @@ hair's breadth below it, so that it is not hit twice. What rebounds slower than 
 that takes from it is what the bounces left out would have, to second order.
 """
 
-from math import hypot
+from math import sqrt
 
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import accelerations, held
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
@@ -115,7 +115,7 @@ class ContactState:
         if closed:
             arms = body.arms(turn, closed)
             velocities = body.velocities(state, arms)
-            slips = [self._slip_of(velocity) for velocity in velocities]
+            slips = self._slips_of(velocities)
             forces, acceleration, turning = constrained(
                 body, state, turn, closed, arms, slips, acceleration, turning)
         self.solved = (arms, velocities, slips, forces, acceleration, turning)
@@ -126,11 +126,13 @@ class ContactState:
                 0.5 * (r * w + p * y - q * x), -0.5 * (p * x + q * y + r * z),
                 *acceleration, *turning]
 
-    def _slip_of(self, velocity):
-        """Return the direction in which a point slides, or None if it may stick."""
-        x, y, _ = velocity
-        speed = hypot(x, y)
-        return (x / speed, y / speed) if speed > self._slip else None
+    def _slips_of(self, velocities):
+        """Return the directions in which points slide, None for those that may stick."""
+        slips = []
+        for x, y, _ in velocities:
+            speed = sqrt(x * x + y * y)
+            slips.append((x / speed, y / speed) if speed > self._slip else None)
+        return slips
 
     # -- contact -------------------------------------------------------------------------------
 
@@ -194,7 +196,7 @@ class ContactState:
         turn = body.turn(self.state)
         arms = body.arms(turn, points)
         velocities = body.velocities(self.state, arms)
-        sticks = [stick and self._slip_of(velocity) is None for velocity in velocities]
+        sticks = [stick and slip is None for slip in self._slips_of(velocities)]
         change = held(body, turn, arms, velocities, sticks)
         if change is None:
             self.state = [*self.state[:7], *[0.0] * 6]

@@ -39,7 +39,7 @@ from rigid_sim_ros.engine.solvers.single import solve_one
 _AXES = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 """Normal and tangents, in the order of a contact problem's rows."""
 
-_LEAST_RESPONSE = 0.02
+LEAST_RESPONSE = 0.02
 """Of the normal response without friction: the least that friction may leave of it."""
 
 
@@ -213,7 +213,7 @@ def one_point(body, turn, arm, free, slip):
     nn = response[0]
     # friction that presses the point down as fast as the normal force lifts it (Painleve) has no
     # solution as a force: its coupling is limited, and position errors are projected away
-    normal = -free[2] / max(nn + response[1] * x + response[2] * y, _LEAST_RESPONSE * nn)
+    normal = -free[2] / max(nn + response[1] * x + response[2] * y, LEAST_RESPONSE * nn)
     return normal * x, normal * y, normal
 
 

@@ -24,8 +24,11 @@ form refuses, by returning None, where a point would pull or leave its cone.
 from math import hypot
 
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import (
-    accelerations, contact_forces, one_point)
+    accelerations, contact_forces, LEAST_RESPONSE, one_point)
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import cross, dot, SPIN
+
+MOST_RESPONSE = 10.0
+"""Bound of the normal response of a point of a box or a ball, in inverse masses."""
 
 
 def constrained(body, state, turn, points, arms, slips, linear, angular):
@@ -50,12 +53,12 @@ def constrained(body, state, turn, points, arms, slips, linear, angular):
     """
     count = len(points)
     found = None
-    if count == 1:
+    if None not in slips:
+        form = _sliding_points if count < 3 else _sliding_face
+        found = form(body, state, turn, arms, slips, linear, angular)
+    elif count == 1:
         free = body.accelerations(state, arms, linear, angular)
-        found = (one_point(body, turn, arms[0], free[0], slips[0]),), None, None
-    elif None not in slips:
-        if count > 2:
-            found = _sliding_face(body, turn, arms, slips, linear, angular)
+        found = (one_point(body, turn, arms[0], free[0], None),), None, None
     elif slips == [None] * count:
         if count > 2:
             found = _sticking_face(body, state, turn, arms, linear, angular)
@@ -154,7 +157,52 @@ def _in_cones(body, forces):
     return all(z >= 0.0 and hypot(x, y) <= friction * z for x, y, z in forces)
 
 
-def _sliding_face(body, turn, arms, slips, linear, angular):
+def _sliding_points(body, state, turn, arms, slips, linear, angular):
+    """Return (forces, linear, angular acceleration) of one or two points that slide, or None."""
+    inverse_mass, friction = body.inverse_mass, body.friction
+    p, q, r = angular
+    wx, wy, wz = state[SPIN]
+    square = 0.0 if body.is_ball else wx * wx + wy * wy + wz * wz
+    free, sliding, turnings = [], [], []
+    for (x, y, z), (u, v) in zip(arms, slips):
+        inward = 0.0 if body.is_ball else wz * (wx * x + wy * y + wz * z) - square * z
+        free.append(linear[2] + p * y - q * x + inward)
+        u, v = -friction * u, -friction * v
+        sliding.append((u, v))
+        turnings.append(body.turned(turn, (y - z * v, z * u - x, x * v - y * u)))
+    x, y, _ = arms[0]
+    a = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
+    if len(arms) == 1:
+        if a < LEAST_RESPONSE * MOST_RESPONSE * inverse_mass:
+            return None
+        normals = max(-free[0] / a, 0.0),
+    else:
+        b = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
+        x, y, _ = arms[1]
+        c = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
+        d = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
+        determinant = a * d - b * c
+        if determinant <= 0.0:
+            return None
+        normals = (b * free[1] - d * free[0]) / determinant, (
+            c * free[0] - a * free[1]) / determinant
+        if min(normals) < 0.0:
+            return None
+    ax, ay, az = linear
+    forces = []
+    for normal, (u, v), (i, j, k) in zip(normals, sliding, turnings):
+        forces.append((normal * u, normal * v, normal))
+        normal_acceleration = inverse_mass * normal
+        ax += normal_acceleration * u
+        ay += normal_acceleration * v
+        az += normal_acceleration
+        p += normal * i
+        q += normal * j
+        r += normal * k
+    return forces, (ax, ay, az), (p, q, r)
+
+
+def _sliding_face(body, _state, turn, arms, slips, linear, angular):
     """
     Return (forces, linear, angular acceleration) of a sliding face's corners, or None.
 

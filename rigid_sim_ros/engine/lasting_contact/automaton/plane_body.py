@@ -81,8 +81,11 @@ class PlaneBody:
         if self.is_ball:
             return [(0.0, 0.0, -self.radius)] * len(points)
         (a, b, c), (d, e, f), (g, h, i) = turn
-        return [(a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
-                for x, y, z in (self.corners[point] for point in points)]
+        arms, corners = [], self.corners
+        for point in points:
+            x, y, z = corners[point]
+            arms.append((a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z))
+        return arms
 
     def gaps(self, state):
         """Return the heights [m] of all points."""
