@@ -32,7 +32,7 @@ from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
 
 SPARE_STEPS = 4
-"""Pairs are looked for that may meet in so many steps: until one does, islands stay as they are."""
+"""Pairs are looked for that may meet in so many steps: till one does, islands stay as they are."""
 
 REACH_FACTOR = 2.0
 """
@@ -131,11 +131,11 @@ class Islands:
         a, b = a[both], b[both]
         mixed = self.touching[a] != self.touching[b]
         a, b = _within(bodies, state.position, a[mixed], b[mixed], reach)
+        if not a.size:
+            return nobody, nobody
         gap = separations(bodies, a, b, state.position, state.orientation)
         near = gap < reach[a] + reach[b] + CLOSED * bodies.bounding_radius[a]
         there = np.where(self.touching[a], b, a)[near]
-        if not there.size:
-            return nobody, nobody
         sleeps = self.asleep[there]
         return np.unique(there[~sleeps]), np.unique(there[sleeps])
 

@@ -176,8 +176,9 @@ class OnPlane:
         work.impacts += len({hit.time for hit in hits})
         for hit in hits:
             x, y, z = hit.point
+            point = self._to_world((x, y, z + self._offset))
             island.world.events.append(
-                self._began + hit.time, a, b, IMPACT, self._to_world((x, y, z + self._offset)), normal,
+                self._began + hit.time, a, b, IMPACT, point, normal,
                 sign * np.array(self._to_world(hit.impulse)), hit.speed)
 
     def _contacts(self, automaton):

@@ -44,7 +44,9 @@ DRIFT = 1e-12
 """Of length and speed: what is put back onto the plane."""
 
 MANY_IMPACTS = 25
-"""Impacts between two readings after which slow sliding is stopped: corners may trade slips for ever."""
+"""
+Impacts between two readings after which slow sliding is stopped: corners may trade slips for ever.
+"""
 
 
 class Hit:
