@@ -72,7 +72,7 @@ class Step:
 
     @cached_property
     def between(self):
-        """A function of the time since the start that gives the state there."""
+        """Return a function of the time since the start that gives the state there."""
         h = self.size
         rows = []
         for y, z, a, c, d, e, f, g in zip(self.start, self.end, *self._stages):
