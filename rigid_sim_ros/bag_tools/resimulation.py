@@ -35,7 +35,7 @@ from rigid_sim_ros.nodes.session import Session
 from rigid_sim_ros.recording import Bag, RecordingError
 from rigid_sim_ros.recording.history import read_history
 from rigid_sim_ros.recording.journal import (
-    ADD, decode_journal, PARAMETERS, PLACE, REMOVE, RESET)
+    ADD, COLLISION, decode_journal, PARAMETERS, PLACE, REMOVE, RESET)
 from rigid_sim_ros.scene import load_scene, SceneError
 
 POSES = 'poses'
@@ -82,7 +82,8 @@ class Resimulation:
         self._changes = changes or {}
         self._readers = {name.rpartition('/')[2]: make() for name, make in READERS.items()}
         self._lines = {PARAMETERS: self._set_parameters, RESET: self._reset, ADD: self._add,
-                       REMOVE: self._remove, PLACE: self._place}
+                       REMOVE: self._remove, PLACE: self._place,
+                       COLLISION: self._go_to_collision}
         self._session = None
         self._encoders = {}
         self._collisions = None
@@ -198,12 +199,17 @@ class Resimulation:
         self._session.place(line['name'], *(line[field] for field in (
             'position', 'orientation', 'velocity', 'angular_velocity')))
 
-    def _advance_to(self, time_ns):
+    def _advance_to(self, time_ns, until_collision=False):
         try:
-            self._session.advance_to(time_ns)
+            self._session.advance_to(time_ns, until_collision)
         except (ArithmeticError, LinAlgError) as error:
             raise RecordingError(f'{self._bag.path} cannot be simulated again beyond '
                                  f'{self._session.time / 1e9:.9f} s: {error}') from error
+
+    def _go_to_collision(self, line):
+        # with other options the first collision is another: then the stamp alone counts
+        if not self._changes:
+            self._advance_to(line['end_ns'], until_collision=True)
 
     def _compared(self, kind, message):
         session = self._session

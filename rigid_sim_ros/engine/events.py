@@ -59,6 +59,11 @@ class EventLog:
     def __len__(self):
         return len(self._rows)
 
+    @property
+    def met(self):
+        """Whether bodies came together in any of these events."""
+        return any(row[3] != END for row in self._rows)
+
     def append(self, time, a, b, kind, point, normal, impulse=(0.0, 0.0, 0.0), speed=0.0):
         """
         Note one event: a time [s], two body indices, a kind, and what `COLLISION` holds.

@@ -78,12 +78,19 @@ class Simulation:
         """Return how much time has been simulated since the start [s]."""
         return self._method.time
 
-    def advance(self, duration):
-        """Advance by exactly `duration` [s], zero or more; `collisions` are then those of it."""
+    def advance(self, duration, until_collision=False):
+        """
+        Advance by exactly `duration` [s], zero or more; `collisions` are then those of it.
+
+        If `until_collision`, not beyond the instant at which bodies first come together, their
+        impact included. Method 'exact' stops at that instant if one of them was in flight, and at
+        the end of the step (`max_step` at most) if they met in lasting contact; the others stop
+        at the end of their step.
+        """
         if not 0 <= duration < inf:
             raise ValueError(f'duration is {duration!r} s; allowed: zero or a positive number')
         if duration > 0:
-            self._method.advance(float(duration))
+            self._method.advance(float(duration), until_collision)
         self._collisions = self._events.take()
 
     # -- what can be read ----------------------------------------------------------------------

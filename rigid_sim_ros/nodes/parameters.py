@@ -96,7 +96,7 @@ PARAMETERS = (
     Row('real_time_factor', 1.0, 'simulated seconds per second; 0 is as fast as possible', '',
         0.0, 100.0),
     Row('start_paused', False, 'begin paused', read_only=True),
-    Row('pause_on_collision', False, 'pause at the end of the period in which bodies collide'),
+    Row('pause_on_collision', False, 'pause at the instant at which bodies first collide'),
     Row('step_duration', 0.01, 'simulated time of a call of `~/step`', 's', 1e-6, 60.0),
     Row('reset_time', False, '`~/reset` sets simulated time to zero too; otherwise it runs on'),
     Row('command_axes', WORLD_AXES, 'axes of the vectors in commands; body: turned into world '

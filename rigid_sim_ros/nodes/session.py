@@ -18,6 +18,8 @@ A simulation on the node's clock: integer nanoseconds, states at whole periods, 
 Nothing here knows ROS or wall time, so a run is the same however fast it is driven.
 """
 
+from math import ceil
+
 import numpy as np
 
 from rigid_sim_ros.engine.events import BEGIN, IMPACT
@@ -25,7 +27,7 @@ from rigid_sim_ros.engine.model import Scene
 from rigid_sim_ros.nodes.commands import Commands
 from rigid_sim_ros.nodes.pacing import NANOSECONDS, PublishGrid
 from rigid_sim_ros.recording.journal import (
-    encode_add, encode_place, encode_remove, encode_reset)
+    encode_add, encode_place, encode_remove, encode_reset, encode_until_collision)
 from rigid_sim_ros.scene import dump_scene
 
 
@@ -86,8 +88,12 @@ class Session:
         self._publish(self._time, self.simulation.collisions[:0])
 
     def advance(self):
-        """Simulate to the next time on the grid, publish it, and pause if that is asked for."""
-        self.advance_to(self.next_time)
+        """
+        Simulate to the next time on the grid and publish it.
+
+        If `pause_on_collision`, only to the first collision on the way, and pause there.
+        """
+        self.advance_to(self.next_time, self.pause_on_collision)
 
     def step(self, duration, stop=lambda: False):
         """
@@ -154,21 +160,28 @@ class Session:
             self.on_bodies_changed()
         self.publish_now()
 
-    def advance_to(self, end):
-        """Simulate to `end` [ns], carry out what falls due before it, and publish."""
+    def advance_to(self, end, until_collision=False):
+        """
+        Simulate to `end` [ns], carry out what falls due before it, and publish.
+
+        If `until_collision`, only as far as `Simulation.advance` goes then, and pause there; the
+        stamp is the next whole nanosecond.
+        """
         parts = []
         while True:
             self.commands.carry_out_due(self._time)
             stop = min(end, self.commands.next_time)
-            self._simulate_to(stop)
+            collided = self._simulate_to(stop, until_collision)
             parts.append(self.simulation.collisions)
-            if stop == end:
+            if collided or stop == end:
                 break
+        if collided:
+            self.paused = True
+            self.on_note(encode_until_collision(end))
         collisions = parts[0] if len(parts) == 1 else np.concatenate(parts)
         if len(collisions) and self._origin:
             collisions = collisions.copy()
             collisions['time'] += self._origin / NANOSECONDS
-        self.paused |= self.pause_on_collision and _touched(collisions)
         self._publish(self._time, collisions)
 
     def _take_bodies(self, line):
@@ -177,14 +190,20 @@ class Session:
         self.on_bodies_changed()
         self.publish_now()
 
-    def _simulate_to(self, time):
+    def _simulate_to(self, time, until_collision):
+        """Simulate to `time` [ns], or to the first collision; tell whether there was one."""
+        simulation = self.simulation
         # from the difference to the simulation's own clock, so that rounding does not add up
         target = (time - self._origin) / NANOSECONDS
-        self.simulation.advance(max(0.0, target - self.simulation.time))
-        if self.simulation.method != 'exact':
+        simulation.advance(max(0.0, target - simulation.time), until_collision)
+        if simulation.method != 'exact':
             # that one raises errors of its own, and its poses are not evaluated for nothing
             self._check_finite(time)
+        collided = until_collision and _touched(simulation.collisions)
+        if collided:
+            time = min(time, self._origin + ceil(simulation.time * NANOSECONDS))
         self._time = time
+        return collided
 
     def _check_finite(self, time):
         """Raise FloatingPointError if a state has numbers that are none."""

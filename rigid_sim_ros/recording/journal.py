@@ -23,7 +23,8 @@ happened and stamped with the simulated time [ns] at which they took effect:
   (not when it arrives, if it waits for its stamp), before the state that first shows it;
 * on `~/journal`, a `parameters` line at the start and whenever one of them is changed; a `reset`
   line for every reset; an `add`, `remove` or `place` line for every body that was added, taken
-  out or placed; each before the first state that shows it;
+  out or placed; each before the first state that shows it; a `collision` line before every state
+  that was published because bodies came together, with the time that was simulated towards;
 * what happened before, from the time at which the scene was loaded or last reset on, as the
   attachment `history` (see `rigid_sim_ros.recording.history`).
 
@@ -39,6 +40,8 @@ from rigid_sim_ros.messages import decode_string, encode_string, MessageError
 PARAMETERS, RESET, BODIES = 'parameters', 'reset', 'bodies'
 
 ADD, REMOVE, PLACE = 'add', 'remove', 'place'
+
+COLLISION = 'collision'
 
 
 def encode_parameters(command_axes, command_timeout):
@@ -72,6 +75,11 @@ def encode_place(name, position, orientation, velocity, angular_velocity):
     return _encode({'event': PLACE, 'name': name, 'position': list(position),
                     'orientation': list(orientation), 'velocity': list(velocity),
                     'angular_velocity': list(angular_velocity)})
+
+
+def encode_until_collision(end_ns):
+    """Return a line: from the last state on towards a time [ns], but to the first collision."""
+    return _encode({'event': COLLISION, 'end_ns': end_ns})
 
 
 def encode_bodies(moving_count, all_names):
@@ -114,6 +122,7 @@ _FIELDS = {
     REMOVE: {'name': _is_text},
     PLACE: {'name': _is_text, 'position': _VECTOR, 'orientation': _QUATERNION,
             'velocity': _VECTOR, 'angular_velocity': _VECTOR},
+    COLLISION: {'end_ns': _is_count},
     BODIES: {'moving_count': _is_count, 'all_names': _are(_is_text)},
 }
 

@@ -165,6 +165,28 @@ def test_settings_that_cannot_follow_a_run_are_one_line_after_what_they_could(tm
     assert 'cannot be simulated again beyond ' in output.err.splitlines()[-1]
 
 
+def test_pauses_on_collision_are_at_the_same_instants_again(tmp_path, capsys):
+    # a cube slides all the time, so that steps are cut where the ball bounces
+    scene = SCENE.replace('[0, 0, 100]', '[0, 0, 0.3]').replace('[3, 0, 100]', '[3, 0, 0.1]')
+    scene = scene.replace('angular_velocity: [1, 2, 3]', 'velocity: [5, 0, 0]')
+    scene += 'planes: [{name: ground}]\nmaterial: {restitution: 0.5, friction: 0.2}\n'
+    with Recorded(tmp_path / 'bag', scene) as run:
+        run.session.on_note = lambda line: run.write('~/journal', line)
+        run.session.advance()
+        run.session.pause_on_collision = True
+        for _ in range(3):
+            while not run.session.paused:
+                run.session.advance()
+            assert run.session.time % 10_000_000
+            run.session.paused = False
+        run.session.pause_on_collision = False
+        run.advance(10)
+    assert replay.main([str(tmp_path / 'bag')]) == 0
+    # with other options the pauses are stamps like any other
+    assert replay.main([str(tmp_path / 'bag'), '--with', 'max_step=0.001']) == 1
+    assert 'cannot be simulated' not in capsys.readouterr().err
+
+
 CROWD = """
 gravity: [0, 0, 0]
 material: {restitution: 1.0, friction: 0.0}

@@ -139,7 +139,7 @@ def test_pause_on_collision(paused):
     client.spin_until(lambda: events and lines, 'a collision')
     client.spin(0.2)
     end = nanoseconds(poses[-1])
-    assert TOUCH <= end / 1e9 <= TOUCH + 0.01
+    assert TOUCH <= end / 1e9 <= TOUCH + 2e-9
     assert len(events) == len(lines) == 1
     assert '"body_a": "ball", "body_b": "ground"' in lines[0].data
     assert nanoseconds(events[0]) == end

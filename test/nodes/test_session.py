@@ -89,8 +89,27 @@ def test_pause_on_collision():
     while not run.session.paused:
         run.session.advance()
         assert run.session.time < NANOSECONDS
-    assert touch <= run.session.time / NANOSECONDS <= touch + 0.01
-    assert run.collisions[-1]['time'][0] == pytest.approx(touch, abs=1e-9)
+    # at that very instant, told by the nanosecond after it
+    assert 0 <= run.session.time - touch * NANOSECONDS < 1.001
+    assert run.times[-2:] == [310 * MILLISECOND, run.session.time]
+    assert run.positions[-1][0, 2] == pytest.approx(0.1, abs=1e-12)
+    assert run.collisions[-1]['time'].tolist() == pytest.approx([touch], abs=1e-12)
+    # going on, the states are on the grid again, up to the next collision
+    run.session.paused = False
+    run.session.advance()
+    assert run.times[-1] == 320 * MILLISECOND
+    while not run.session.paused:
+        run.session.advance()
+        assert run.session.time < 10 * NANOSECONDS
+    assert run.session.time > touch * NANOSECONDS
+    assert len(run.collisions[-1])
+
+
+def test_pause_on_collision_leaves_a_step_whole():
+    run = Run(DROP)
+    run.session.pause_on_collision = True
+    run.session.step(0.5)
+    assert run.session.time == NANOSECONDS // 2
 
 
 @pytest.mark.parametrize('from_zero', [False, True])

@@ -15,8 +15,8 @@
 """
 The methods a simulation can use: a file and a row of `METHODS` each.
 
-A method is made of a `World`, a `State` and the time [s] of that state. It has `time`, `state`
-(all of it at that time), `advance(duration)`, `set_motion(indices, **quantities)`,
+A method is made of a `World`, a `State` and the time [s] of that state. It has `time`, `state` (all
+of it at that time), `advance(duration, until_collision)`, `set_motion(indices, **quantities)`,
 `set_wrench(indices, force, torque)` and `asleep`.
 """
 

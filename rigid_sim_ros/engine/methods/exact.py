@@ -62,24 +62,30 @@ class Exact:
 
     # -- time ----------------------------------------------------------------------------------
 
-    def advance(self, duration):
-        """Advance by `duration` [s]: flights from touch to touch, islands in steps."""
+    def advance(self, duration, until_collision=False):
+        """
+        Advance by `duration` [s]: flights from touch to touch, islands in steps.
+
+        If `until_collision`, not beyond the first touch at which bodies come together.
+        """
         end = self.time + duration
         if not self._islands.active and not self._encounters.active:
             # everything rests: what has been read of it stays true
             self.time = end
         while self.time < end:
             if self._islands.active:
-                self._step_islands(self._islands.step_end(self.time, end))
+                self._step_islands(self._islands.step_end(self.time, end), until_collision)
             else:
-                self.time = self._fly(end)
+                self.time = self._fly(end, until_collision)
             self._state = None
+            if until_collision and self._world.events.met:
+                return
 
-    def _step_islands(self, end):
+    def _step_islands(self, end, until_collision):
         """Advance everything to `end` [s] or to the first touch before it that lasts."""
         self._gather(end)
         members = np.flatnonzero(self._islands.touching)
-        end = self._fly(end)
+        end = self._fly(end, until_collision)
         if end > self.time:
             self._step(members, end)
             self.time = end
@@ -96,10 +102,14 @@ class Exact:
             self._encounters.hide(joining)
             self._islands.add(joining)
 
-    def _fly(self, end):
-        """Follow the flights to `end` [s], or to a touch that lasts; return when that is."""
+    def _fly(self, end, until_collision):
+        """
+        Follow the flights to `end` [s], or to a touch that lasts; return when that is.
+
+        Or to the first at which bodies come together, if no more than that is asked for.
+        """
         while (touch := self._encounters.next_touch(end)) is not None:
-            if self._touch(*touch):
+            if self._touch(*touch) or until_collision and self._world.events.met:
                 return touch[0]
         return end
 

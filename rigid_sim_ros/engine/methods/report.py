@@ -54,9 +54,9 @@ class Report(Stepping):
         if 'orientation' in values:
             self._turn[:, :, indices] = rotation.matrix(self.state.orientation[:, indices])
 
-    def advance(self, duration):
+    def advance(self, duration, until_collision=False):
         """See `Stepping`; attitudes are told as the rotations nearest to the matrices."""
-        super().advance(duration)
+        super().advance(duration, until_collision)
         self.state.orientation = _quaternions(_nearest_rotations(self._turn))
 
     def step(self, dt):

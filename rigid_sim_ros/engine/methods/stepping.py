@@ -31,14 +31,20 @@ class Stepping:
         """Advance the state by `dt` [s], at most the world's `max_step`."""
         raise NotImplementedError
 
-    def advance(self, duration):
-        """Advance by `duration` [s] in equal steps of at most `max_step`."""
+    def advance(self, duration, until_collision=False):
+        """
+        Advance by `duration` [s] in equal steps of at most `max_step`.
+
+        If `until_collision`, not beyond the step in which bodies first come together.
+        """
         # a duration of n steps is not cut into n + 1 for the sake of its rounding
         count = max(1, ceil(duration / self._world.max_step * (1 - 1e-12)))
         start, dt = self.time, duration / count
         for number in range(1, count + 1):
             self.time = start + duration * (number / count)
             self.step(dt)
+            if until_collision and self._world.events.met:
+                return
 
     def set_motion(self, indices, **values):
         """Give bodies (k,) new values (., k) of the quantities named, fields of `State`."""
