@@ -30,7 +30,7 @@ import numpy as np
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.lasting_contact.near import same_poses
 from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_WAY, run_into
-from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members
+from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members, undisturbed
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.lasting_contact.pile.pile_step import NEVER, PileStep
@@ -41,7 +41,13 @@ PUSH_ITERATIONS = 15
 """Of the solver to push overlaps out, at most; the rest is left to the next time."""
 
 OVERLAP = 3e-4
-"""Of the length scale: overlap that is left; it keeps contacts closed."""
+"""Of the length scale: overlap at the end of a step for which it is not taken again."""
+
+PUSHED = 3e-6
+"""Of the length scale: overlap that is pushed out, to a third."""
+
+CLOSED = 6e-4
+"""Of the length scale: gap of contacts that may hold what rests."""
 
 TRIES = 4
 """
@@ -90,9 +96,6 @@ class Pile:
         """(p,) [m]: how far points of each pair may have passed each other since then."""
         self._ahead = None
         """The `Motion` at the end of the last step and what was `Found` there, or None."""
-        self._lost = sum(pile._lost for pile in older
-                         if np.isin(pile._island.members, island.members).any())
-        """Energy [J] that the last step has lost."""
 
     def advance(self, state, start, duration):
         """
@@ -105,18 +108,20 @@ class Pile:
         free = island.free_motion(state)
         scales = island.scales(free)
         motion = island.gather(state)
-        resting = np.zeros(island.member_count, dtype=bool)
+        groups = np.full(island.member_count, -1)
         if self.steps % TESTED_STEPS == 0:
-            resting, contacts = resting_members(
-                island, self.quiet, motion, free, scales, start, 2 * OVERLAP * scales.length)
-            if resting.all():
+            groups, contacts = resting_members(
+                island, self.quiet, motion, free, scales, start, CLOSED * scales.length)
+            if (groups >= 0).all():
                 island.scatter(motion.stopped(), state)
-                return contacts, resting
+                return contacts, groups >= 0
         self.steps += 1
         parts = parts_of(island, free, motion, duration)
+        before = motion
         for part in range(parts):
             motion, closed = self._step(
                 motion, free, scales, start + part * duration / parts, duration / parts)
+        resting = undisturbed(island, scales, before, motion, groups)
         island.scatter(motion.stopped(resting), state)
         return closed, resting
 
@@ -136,8 +141,12 @@ class Pile:
             vector.reshape(-1, 6)[theirs] = self.contacts.vector.reshape(-1, 6)[mine]
         return vector
 
-    def _renew(self, motion, free, scales, duration):
-        """Find the contacts of a `Motion` and return it with overlaps pushed out."""
+    def _renew(self, motion, free, scales, duration, lost):
+        """
+        Find the contacts of a `Motion` and return it with overlaps pushed out.
+
+        As far as the energy goes that the step to it has lost [J], or all of those that are deep.
+        """
         island = self._island
         vector = self._vector
         if self.contacts is not None:
@@ -151,9 +160,9 @@ class Pile:
         self.contacts = contacts = PileContacts(island.bodies, found, motion.orientation, vector)
         self._forces = contacts.row_forces(
             self._remembered(found.contacts, MATCH * scales.length))
-        allowed = OVERLAP * scales.length
-        if (contacts.gap < -3 * allowed).any():
-            motion = self._pushed_out(motion, free, allowed, DEEP * scales.length)
+        pushed = PUSHED * scales.length
+        if (contacts.gap < -pushed).any():
+            motion = self._pushed_out(motion, free, pushed / 3, DEEP * scales.length, lost)
         return motion
 
     def _found(self, motion, scales, way):
@@ -172,12 +181,8 @@ class Pile:
         axes = self.contacts.axes
         return axes[:, 0] * world[0] + axes[:, 1] * world[1] + axes[:, 2] * world[2]
 
-    def _pushed_out(self, motion, free, allowed, deep):
-        """
-        Return the motion with overlaps of more than `allowed` [m] undone, nearly.
-
-        As far as the energy goes that the step before has lost, but for `deep` ones.
-        """
+    def _pushed_out(self, motion, free, allowed, deep, lost):
+        """Return the motion with overlaps of more than `allowed` [m] undone; see `_renew`."""
         contacts, island = self.contacts, self._island
         rows = np.zeros((3, len(contacts.gap)))
         rows[0] = contacts.gap + allowed
@@ -190,15 +195,15 @@ class Pile:
         raised = -((free.acceleration[:, :count] * linear).sum(axis=0)
                    / island.bodies.inverse_mass[:count]).sum()
         part = 1.0
-        if raised > self._lost and contacts.gap.min() > -deep:
-            part = self._lost / raised
+        if raised > lost and contacts.gap.min() > -deep:
+            part = lost / raised
         contacts.gap = contacts.gap + part * contacts.motion(contacts.rows.response(force))[0]
         return motion.moved(np.arange(count), part * linear, part * angular)
 
     def _step(self, motion, free, scales, start, duration):
         """Return (motion, closed contacts) after a step of `duration` [s]."""
-        if self.contacts is None or (self._way > KEPT_WAY * scales.length).any():
-            motion = self._renew(motion, free, scales, duration)
+        if self.contacts is None:
+            motion = self._renew(motion, free, scales, duration, 0.0)
         step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces)
         for attempt in range(TRIES):
             step.attempt()
@@ -217,8 +222,10 @@ class Pile:
         hit, impulse = step.finish()
         if hit.any():
             self._note(hit, impulse, -step.speed, start + duration)
-        self._lost = step.lost
-        return step.end, self.contacts.contacts.select(step.closed)
+        end, closed = step.end, self.contacts.contacts.select(step.closed)
+        if (self._way > KEPT_WAY * scales.length).any():
+            end = self._renew(end, free, scales, duration, step.lost)
+        return end, closed
 
     def _note(self, which, force, speed, time):
         """Note rebounds (k,) bool as impacts, at the end of the step they are in."""

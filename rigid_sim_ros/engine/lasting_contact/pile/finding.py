@@ -49,6 +49,22 @@ class Found(NamedTuple):
                          for body in (contacts.body_a, contacts.body_b)])
         return cls(contacts, arms, np.zeros(contacts.count, dtype=bool))
 
+    def carried(self, start, end):
+        """
+        Return the same contacts where they are when bodies have moved from a `Motion` to another.
+
+        That is halfway between where the two bodies carry them, or where the one does that moves.
+        """
+        a, b = self.contacts.body_a, self.contacts.body_b
+        turn = rotation.multiply(end.orientation, rotation.conjugate(start.orientation))
+        points = [end.position[:, body] + rotation.rotate(turn[:, body], arm)
+                  for body, arm in zip((a, b), self.arms)]
+        moves = np.any(end.position != start.position, axis=0)
+        share = np.where(moves[a] == moves[b], 0.5, moves[b])
+        point = points[0] + share * (points[1] - points[0])
+        arms = np.stack((point - end.position[:, a], point - end.position[:, b]))
+        return Found(self.contacts, arms, self.late)
+
     def keys(self):
         """Return a number for each contact's pair, (k,) int."""
         return self.contacts.body_a * (1 << 24) + self.contacts.body_b
@@ -97,10 +113,24 @@ def run_into(found, gap, ahead, end, duration, allowed):
         return None
     late = ahead.select(overlap[of_row])
     contacts = late.contacts
+    late.arms[:] += _common_arms(contacts, end, duration)
     # as deep as it was at the start it may stay
     contacts.separation -= np.minimum(before[of_row[overlap[of_row]]] + allowed, 0.0)
     contacts.separation -= duration * rotation.dot(contacts.normal, _across(late, end))
     return Found(contacts, late.arms, np.ones(contacts.count, dtype=bool))
+
+
+def _common_arms(contacts, end, duration):
+    """
+    Return what to add to the arms (2, 3, k) [m] from the centres at the end of a step.
+
+    Then they come from the centres at its start to one point of both bodies, halfway between those
+    that come to be the contact: equal and opposite forces there keep the angular momentum.
+    """
+    a, b = contacts.body_a, contacts.body_b
+    moves = np.any(end.linear != 0.0, axis=0)
+    apart = 0.5 * duration * (end.linear[:, b] - end.linear[:, a]) * (moves[a] & moves[b])
+    return np.stack((-apart, apart))
 
 
 def _across(found, motion):

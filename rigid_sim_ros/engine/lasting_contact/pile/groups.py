@@ -18,6 +18,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.graph import component_labels
 from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
+from rigid_sim_ros.engine.lasting_contact.scales import REST
 
 QUIET_TIME = 0.25
 """Time [s] all bodies must have been where they are to rest, times the root of their length."""
@@ -28,7 +29,7 @@ QUIET_WAY = 2e-3
 
 def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     """
-    Return (which members rest (m,) bool, the contacts that are closed in a `Motion`).
+    Return (the group of each member that rests (m,) int or -1, contacts closed in a `Motion`).
 
     A group of members that touch rests if all of them are slow and held by their contacts, or if
     none of them has moved for a while, as `Quiet` knows. Contacts below a gap [m] are closed.
@@ -39,7 +40,7 @@ def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     quiet = still > QUIET_TIME * scales.length ** 0.5
     calm = quiet | slow(island, scales, motion)
     contacts = island.find_contacts(motion, gap)
-    resting = np.zeros(count, dtype=bool)
+    resting = np.full(count, -1)
     if not calm.any():
         return resting, contacts
     a, b = contacts.body_a, contacts.body_b
@@ -51,6 +52,25 @@ def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     touched = np.isin(labels, of_contact)
     for label in np.unique(labels[~moved[labels] & touched]):
         members = labels == label
-        resting[members] = quiet[members].all() or stands(
-            island, free, scales, motion, contacts.select(of_contact == label), members)
+        if quiet[members].all() or stands(
+                island, free, scales, motion, contacts.select(of_contact == label), members):
+            resting[members] = label
     return resting, contacts
+
+
+def undisturbed(island, scales, before, after, groups):
+    """
+    Return which members (m,) bool rest on after a step from one `Motion` to another.
+
+    That is of those in groups (m,) int, not -1, that nobody has hit in it.
+    """
+    limit = REST * scales.speed
+    radius = island.bodies.bounding_radius[:island.member_count]
+    faster = _speed(after, radius) > _speed(before, radius) + limit
+    return (groups >= 0) & ~np.isin(groups, groups[faster])
+
+
+def _speed(motion, radius):
+    """Return the speeds (m,) [m/s] of the first bodies, turning counted at radii (m,) [m]."""
+    linear, angular = motion.linear[:, :len(radius)], motion.angular[:, :len(radius)]
+    return np.abs(linear).max(axis=0) + radius * np.abs(angular).max(axis=0)

@@ -127,22 +127,29 @@ class PileStep:
         impulse, closed = contacts.forces(self.forces), self.closed
         rebounding = self.hits & closed & (contacts.restitution > 0.0)
         if rebounding.any():
-            impulse = impulse + self._rebound(velocity, closed, rebounding)
+            impulse = impulse + self._rebound(closed, rebounding)
         return self.hits & closed & ~self._pressed, impulse
 
-    def _rebound(self, velocity, closed, rebounding):
+    def _rebound(self, closed, rebounding):
         """Change the velocities at the end and return the impulses (3, k) that do it."""
         contacts = self.contacts
         asked = np.zeros((3, len(closed)))
         asked[0] = np.where(rebounding, contacts.restitution * self.speed, 0.0)
         asked[0] = np.where(closed, asked[0], NEVER)
+        self.contacts = PileContacts(
+            self._island.bodies, contacts.found.carried(self._start, self.end),
+            self.end.orientation, contacts.vector)
+        velocity = self.contacts.scaled(self.end)
         forces, change = self._solved(
-            velocity, asked, np.zeros_like(self.forces), HIT_ACCURACY * -float(self.speed.min()),
-            HIT_ITERATIONS)
+            velocity, asked, np.zeros(3 * self.contacts.rows.count),
+            HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS)
         part = rebound_part(velocity, change, self.lost)
+        self.lost -= part * float(change @ velocity + 0.5 * part * (change @ change))
         self.end = self.end.struck(np.arange(self._island.member_count),
-                                   *contacts.velocities(part * change))
-        return part * contacts.forces(forces)
+                                   *self.contacts.velocities(part * change))
+        impulse = part * self.contacts.forces(forces)
+        self.contacts = contacts
+        return impulse
 
     def _solved(self, velocity, asked, forces, tolerance, iterations):
         """Return (forces by row, the change of scaled velocities they make)."""
