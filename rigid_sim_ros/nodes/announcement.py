@@ -48,8 +48,8 @@ def _literal(value):
 
 
 def welcome(node, simulation, parameters, publications, recording_text):
-    """Return the lines to print when a node is ready; names are those after remapping."""
-    lines = [
+    """Return the lines to log when a node is ready; names are those after remapping."""
+    return [
         f'scene {parameters.scene!r}: {_count(simulation)}; method {simulation.method}, '
         f'states at {parameters.publish_rate:g} Hz, real-time factor '
         f'{parameters.real_time_factor:g}{", paused" if parameters.start_paused else ""}',
@@ -57,13 +57,17 @@ def welcome(node, simulation, parameters, publications, recording_text):
         'publishes ' + ' '.join(publication.topic for publication in publications),
         'takes     ' + ' '.join(node.resolve_topic_name(row.name) for row in COMMANDS),
         'services  ' + ' '.join(node.resolve_service_name(row.name) for row in SERVICES)]
-    if simulation.names:
-        command = ros2_command()
-        folder = os.path.dirname(command)
-        here = ', in this folder' if folder and not os.path.isabs(folder) else ''
-        lines += [f'try, in another terminal{here}:', *('  ' + line for line in examples(
-            command, node.resolve_topic_name, simulation.names))]
-    return lines
+
+
+def invitation(node, simulation):
+    """Return the lines to print when a node is ready: commands to try, a line each."""
+    if not simulation.names:
+        return []
+    command = ros2_command()
+    folder = os.path.dirname(command)
+    here = ', in this folder' if folder and not os.path.isabs(folder) else ''
+    return [f'try, in another terminal{here}:',
+            *examples(command, node.resolve_topic_name, simulation.names)]
 
 
 def examples(command, resolve, names):

@@ -22,7 +22,7 @@ PERIOD = 1.0
 
 
 class Diagnostics:
-    """Measures over a period of wall time and sums it up."""
+    """Measures over periods of wall time, from `start` on, and sums them up."""
 
     def __init__(self, node_name, session, control, refused, late, recording):
         self._name = node_name
@@ -31,21 +31,28 @@ class Diagnostics:
         self._refused = refused
         self._late = late
         self._recording = recording
-        self._due = float('-inf')
-        self._last = None
         self._missed = 0
         self._given_up = 0.0
+        self._factor = self._lateness = 0.0
+        self._newly_missed = 0
+        self.start(float('inf'))
+
+    def start(self, now):
+        """Begin the first period at wall time `now` [s]."""
+        self._begin, self._due = now, now + PERIOD
+        self._advanced = self._session.advanced
 
     def due(self, now):
-        """Tell whether a message is due at wall time `now` [s]; then the next is a period on."""
+        """Tell whether a period is over at wall time `now` [s]; then the next begins."""
         if now < self._due:
             return False
-        self._due = now + PERIOD
+        self._measure(now)
+        self.start(now)
         return True
 
-    def statuses(self, now):
-        """Return the statuses over the wall time since this was last called."""
-        return (self._pace(now), self._simulation(), self._commands(),
+    def statuses(self):
+        """Return the statuses of the period that is over."""
+        return (self._pace(), self._simulation(), self._commands(),
                 self._recording.status(self._name))
 
     def complain(self, warn):
@@ -56,24 +63,25 @@ class Diagnostics:
             warn(f'simulated time fell {given_up:.1f} s behind and goes on from there: this scene '
                  'cannot be computed in real time here, or the process was stopped')
 
-    def _pace(self, now):
-        session, pacer = self._session, self._control.pacer
-        factor = 0.0
-        if self._last is not None:
-            then, time = self._last
-            factor = (session.time - time) / NANOSECONDS / (now - then)
-        self._last = (now, session.time)
-        lateness, pacer.worst_lateness = pacer.worst_lateness, 0.0
-        missed, self._missed = pacer.missed_deadlines - self._missed, pacer.missed_deadlines
+    def _measure(self, now):
+        pacer = self._control.pacer
+        simulated = (self._session.advanced - self._advanced) / NANOSECONDS
+        self._factor = simulated / (now - self._begin)
+        self._lateness, pacer.worst_lateness = pacer.worst_lateness, 0.0
+        self._newly_missed = pacer.missed_deadlines - self._missed
+        self._missed = pacer.missed_deadlines
+
+    def _pace(self):
+        session, pacer, missed = self._session, self._control.pacer, self._newly_missed
         state = 'paused' if session.paused else 'running'
         return DiagnosticStatus(
             WARN if missed else OK, f'{self._name}: time',
             f'{state}, missed {missed} deadlines since the last report' if missed else state, {
                 'simulated time [s]': f'{session.time / NANOSECONDS:.9f}',
-                'real-time factor': f'{factor:.4f}',
+                'real-time factor': f'{self._factor:.4f}',
                 'missed deadlines': pacer.missed_deadlines,
                 'wall time given up [s]': f'{pacer.time_given_up:.3f}',
-                'worst lateness [ms]': f'{lateness * 1e3:.3f}'})
+                'worst lateness [ms]': f'{self._lateness * 1e3:.3f}'})
 
     def _simulation(self):
         if self._control.failure:

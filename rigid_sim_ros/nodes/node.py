@@ -19,7 +19,7 @@ import time
 from rclpy.node import Node
 
 from rigid_sim_ros.engine import Simulation
-from rigid_sim_ros.nodes.announcement import welcome
+from rigid_sim_ros.nodes.announcement import invitation, welcome
 from rigid_sim_ros.nodes.clock_source import ClockSource
 from rigid_sim_ros.nodes.command_topics import CommandTopics
 from rigid_sim_ros.nodes.commands import Refused
@@ -113,7 +113,11 @@ class SimulationNode:
         for line in welcome(self.ros, self.session.simulation, self.parameters,
                             self.publications, self.recording.text):
             self.ros.get_logger().info(line)
+        # not by the logger: its prefix would have to be cut off every command before it can be run
+        for line in invitation(self.ros, self.session.simulation):
+            print(line, flush=True)
         self.control.start()
+        self._diagnostics.start(self._now())
 
     def work(self):
         """Do what is due; return the wall time [s] at which to call again."""
@@ -121,7 +125,7 @@ class SimulationNode:
         if self.session.paused:
             self._show_changes()
         if self._diagnostics.due(now):
-            self._report(now)
+            self._report()
         return self.control.work(now)
 
     def close(self):
@@ -189,12 +193,12 @@ class SimulationNode:
         self._display.clear(self.session.time)
         self.publications.send_scene(self.session.time)
 
-    def _report(self, now):
+    def _report(self):
         self._clock_source.look()
         self._diagnostics.complain(self.ros.get_logger().warning)
         self.recording.report(self.ros.get_logger().error)
         self.publications.send_diagnostics(
-            self.session.time, lambda: self._diagnostics.statuses(now))
+            self.session.time, self._diagnostics.statuses)
 
     def _publish_transforms(self):
         try:

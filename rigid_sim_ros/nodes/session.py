@@ -57,6 +57,8 @@ class Session:
         self._publish = publish
         self._grid = PublishGrid(publish_rate)
         self._time = time
+        self.advanced = 0
+        """Time [ns] simulated so far, whatever resets have done to `time`."""
         # node time at which the simulation's own clock was zero; not zero after a reset that
         # keeps time running
         self._origin = time
@@ -202,6 +204,7 @@ class Session:
         collided = until_collision and _touched(simulation.collisions)
         if collided:
             time = min(time, self._origin + ceil(simulation.time * NANOSECONDS))
+        self.advanced += time - self._time
         self._time = time
         return collided
 

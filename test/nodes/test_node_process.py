@@ -15,6 +15,7 @@
 """The node as a process: how it starts, what it says, how it ends."""
 
 import random
+import shlex
 import signal
 import time
 
@@ -75,9 +76,11 @@ def test_start_tells_where_everything_is(tmp_path):
         process.wait_for_text('cmd_vel geometry_msgs')
         for row in (*PUBLISHED, *COMMANDS, *SERVICES):
             assert client.topic(row.name) in process.error
-        commands = [line.split(': ', 1)[1].strip() for line in process.error.splitlines()
-                    if ' geometry_msgs/msg/' in line]
+        # whole lines that can be copied: a shell takes them apart into a program and its words
+        commands = process.output.splitlines()[1:]
         assert len(commands) == 3
+        assert {tuple(shlex.split(line)[1:4]) for line in commands} == {
+            ('topic', 'pub', '--once')}
         scene = client.listen('~/scene', durability='transient_local')
         text = client.spin_until(lambda: scene and scene[0].data, 'the latched scene')
         names = [body['name'] for body in yaml.safe_load(text)['bodies']]

@@ -103,7 +103,9 @@ BAD = {
     'malformed': [
         many(joint_names=['cube_1', 'cube_2'], twist=[Twist(linear=Vector3(x=1.0))]),
         many(joint_names=['cube_1'], wrench=[Wrench(force=Vector3(x=1.0))] * 3),
-        many(wrench=[Wrench(force=Vector3(x=1.0))])],
+        many(wrench=[Wrench(force=Vector3(x=1.0))]),
+        lambda client: client.publisher('~/cmd_vel').publish(b'\0\1\0\0\0'),
+        lambda client: client.publisher('~/cmd_states').publish(bytes(4) + b'\xff' * 60)],
     'poses': [many(joint_names=['cube_1'], transforms=[Transform()])],
 }
 

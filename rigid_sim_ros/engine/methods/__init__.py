@@ -15,9 +15,9 @@
 """
 The methods a simulation can use: a file and a row of `METHODS` each.
 
-A method is made of a `World`, a `State` and the time [s] of that state. It has `time`, `state` (all
-of it at that time), `advance(duration, until_collision)`, `set_motion(indices, **quantities)`,
-`set_wrench(indices, force, torque)` and `asleep`.
+A method is made of a `World`, a `State` and the time [s] of that state. It has `time`, `state`
+(all of it at that time), `advance(duration, until_collision)`,
+`set_motion(indices, **quantities)`, `set_wrench(indices, force, torque)` and `asleep`.
 """
 
 from rigid_sim_ros.engine.methods.exact import Exact
