@@ -17,10 +17,8 @@
 import os
 
 from rigid_sim_ros.recording.bag_metadata import bag_metadata, to_yaml, write_metadata
-from rigid_sim_ros.recording.mcap_file import McapFile, sync_path
-
-CHUNK_BYTES = 2**20
-"""A chunk is written when it has grown to so many bytes, if its time is not up before."""
+from rigid_sim_ros.recording.disk import sync_path
+from rigid_sim_ros.recording.mcap_file import CHUNK_BYTES, McapFile
 
 
 class BagWriter:

@@ -25,9 +25,9 @@ import os
 from rigid_sim_ros.recording.bag import bag_files
 from rigid_sim_ros.recording.bag_metadata import (
     bag_metadata, FileSummary, to_yaml, write_metadata)
-from rigid_sim_ros.recording.bag_writer import CHUNK_BYTES
+from rigid_sim_ros.recording.disk import is_being_written, sync_path
 from rigid_sim_ros.recording.errors import RecordingError
-from rigid_sim_ros.recording.mcap_file import is_being_written, McapFile, sync_path
+from rigid_sim_ros.recording.mcap_file import CHUNK_BYTES, McapFile
 from rigid_sim_ros.recording.mcap_scan import McapScan
 
 _COMPRESSION = 'zstd'
