@@ -68,6 +68,21 @@ def vector_rows(what, value, count):
     return _checked(what, value, (count, 3))
 
 
+def index_rows(value, count):
+    """Return rows (k,) of `count`, all of them for None, or raise `CommandError`."""
+    if value is None:
+        return np.arange(count)
+    indices = np.asarray(value)
+    if indices.ndim != 1 or len(indices) and indices.dtype.kind not in 'iu':
+        raise CommandError(f'indices is {value!r:.80}; allowed: whole numbers, shape (k,)')
+    indices = indices.astype(np.intp)
+    if len(indices) and not (0 <= indices.min() and indices.max() < count):
+        raise CommandError(f'indices is {value!r:.80}; allowed: 0 to {count - 1}')
+    if len(np.unique(indices)) < len(indices):
+        raise CommandError(f'indices is {value!r:.80}; allowed: each body once')
+    return indices
+
+
 def _checked(what, value, shape):
     """Return finite numbers as an array of this shape, or raise `CommandError`."""
     try:

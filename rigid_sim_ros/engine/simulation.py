@@ -22,7 +22,7 @@ import numpy as np
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.commands import (
-    column_of_moving, CommandError, unit_quaternion, vector, vector_rows)
+    column_of_moving, CommandError, index_rows, unit_quaternion, vector, vector_rows)
 from rigid_sim_ros.engine.events import EventLog
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.engine.state import State, state_of
@@ -196,7 +196,7 @@ class Simulation:
             values['linear_velocity'] = vector('linear velocity', linear)[:, None]
         if angular is not None:
             values['angular_velocity'] = vector('angular velocity', angular)[:, None]
-        self._set_motion(index, values)
+        self._set_motion(np.array([index]), values)
 
     def set_pose(self, name, position=None, orientation=None):
         """
@@ -211,22 +211,34 @@ class Simulation:
             values['position'] = vector('position', position)[:, None]
         if orientation is not None:
             values['orientation'] = unit_quaternion(orientation)[:, None]
-        self._set_motion(index, values)
+        self._set_motion(np.array([index]), values)
 
-    def apply_wrenches(self, forces, torques):
-        """Hold forces [N] and torques [N m], (n, 3), on all moving bodies until replaced."""
-        count = self._world.bodies.moving_count
-        forces = vector_rows('forces', forces, count)
-        torques = vector_rows('torques', torques, count)
-        self._method.set_wrench(np.arange(count), forces.T, torques.T)
+    def apply_wrenches(self, forces, torques, indices=None):
+        """
+        Hold forces [N] and torques [N m], (n, 3), on all moving bodies until replaced.
 
-    def set_velocities(self, linear, angular):
-        """Set the velocities [m/s], [rad/s], (n, 3), of all moving bodies at once."""
-        count = self._world.bodies.moving_count
-        linear = vector_rows('linear', linear, count)
-        angular = vector_rows('angular', angular, count)
-        self._method.set_motion(np.arange(count), linear_velocity=linear.T,
-                                angular_velocity=angular.T)
+        Or (k, 3) on those of `indices`, (k,), rows of `names`. Raises `CommandError` if a shape
+        is another, an index is no row or given twice, or a number is not finite.
+        """
+        indices = index_rows(indices, self._world.bodies.moving_count)
+        forces = vector_rows('forces', forces, len(indices))
+        torques = vector_rows('torques', torques, len(indices))
+        if len(indices):
+            self._method.set_wrench(indices, forces.T, torques.T)
+
+    def set_velocities(self, linear=None, angular=None, indices=None):
+        """
+        Set the velocities [m/s], [rad/s], (n, 3), of all moving bodies at once; None leaves them.
+
+        Or (k, 3) of those of `indices`, as in `apply_wrenches`.
+        """
+        indices = index_rows(indices, self._world.bodies.moving_count)
+        values = {}
+        if linear is not None:
+            values['linear_velocity'] = vector_rows('linear', linear, len(indices)).T
+        if angular is not None:
+            values['angular_velocity'] = vector_rows('angular', angular, len(indices)).T
+        self._set_motion(indices, values)
 
     def add(self, body):
         """
@@ -274,6 +286,6 @@ class Simulation:
         rows.flags.writeable = False
         return rows
 
-    def _set_motion(self, index, values):
-        if values:
-            self._method.set_motion(np.array([index]), **values)
+    def _set_motion(self, indices, values):
+        if values and len(indices):
+            self._method.set_motion(indices, **values)

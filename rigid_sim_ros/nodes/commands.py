@@ -217,6 +217,10 @@ class Commands:
             for name in names:
                 if name not in self._rows:
                     raise self._unknown(name)
+            if len(set(names)) < len(names):
+                twice = next(name for name in names if names.count(name) > 1)
+                raise Refused('named twice', lambda: (
+                    f'command refused: it names {shown(twice)} more than once'))
             self._known = (names, np.array([self._rows[name] for name in names]))
         return self._known[1]
 
@@ -240,7 +244,9 @@ class Commands:
         if self.axes == BODY_AXES:
             turn = self._simulation.orientation[rows].T
             given = {name: rotation.rotate(turn, values.T).T for name, values in given.items()}
-        self._set_velocities(rows, given)
+        linear, angular = given.get('linear_velocity'), given.get('angular_velocity')
+        if linear is not None or angular is not None:
+            self._simulation.set_velocities(linear, angular, rows)
         held = {name: given[name] for name in _HELD if name in given}
         if held:
             self._hold(rows, held)
@@ -264,30 +270,7 @@ class Commands:
         """Replace the quantities given, force and torque or one of them, on the rows."""
         simulation = self._simulation
         values = {name: held.get(name, getattr(simulation, name)[rows]) for name in _HELD}
-        if _all_in_order(rows, simulation):
-            simulation.apply_wrenches(values['force'], values['torque'])
-            return
-        for row, force, torque in zip(rows, values['force'], values['torque']):
-            simulation.apply_wrench(simulation.names[row], force, torque)
-
-    def _set_velocities(self, rows, given):
-        simulation = self._simulation
-        linear, angular = given.get('linear_velocity'), given.get('angular_velocity')
-        if linear is None and angular is None:
-            return
-        if linear is not None and angular is not None and _all_in_order(rows, simulation):
-            simulation.set_velocities(linear, angular)
-            return
-        for number, row in enumerate(rows):
-            simulation.set_velocity(simulation.names[row],
-                                    None if linear is None else linear[number],
-                                    None if angular is None else angular[number])
-
-
-def _all_in_order(rows, simulation):
-    """Tell whether the rows are those of all bodies, so that one call does for all."""
-    count = len(simulation.names)
-    return len(rows) == count and count > 1 and bool((rows == np.arange(count)).all())
+        simulation.apply_wrenches(values['force'], values['torque'], rows)
 
 
 def body_command(name, **quantities):

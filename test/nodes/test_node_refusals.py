@@ -106,6 +106,8 @@ BAD = {
         many(wrench=[Wrench(force=Vector3(x=1.0))]),
         lambda client: client.publisher('~/cmd_vel').publish(b'\0\1\0\0\0'),
         lambda client: client.publisher('~/cmd_states').publish(bytes(4) + b'\xff' * 60)],
+    'named twice': [
+        many(joint_names=['cube_1', 'cube_2', 'cube_1'], twist=[Twist(), Twist(), Twist()])],
     'poses': [many(joint_names=['cube_1'], transforms=[Transform()])],
 }
 
