@@ -68,6 +68,9 @@ class Bodies:
     friction: np.ndarray
     """(n,), 0 or more."""
 
+    restitution_speed: np.ndarray
+    """(n,) [m/s], 0 or more: below it the restitution is in proportion to the speed."""
+
     @property
     def count(self):
         """Count of all columns: moving bodies, fixed bodies and planes."""
@@ -105,7 +108,9 @@ def bodies_of(scene):
         inertia=np.hstack((inertia, np.ones((3, fixed_count)))),
         inverse_inertia=np.hstack((1 / inertia, np.zeros((3, fixed_count)))),
         restitution=np.array([material.restitution for material in materials], dtype=float),
-        friction=np.array([material.friction for material in materials], dtype=float))
+        friction=np.array([material.friction for material in materials], dtype=float),
+        restitution_speed=np.array([material.restitution_speed for material in materials],
+                                   dtype=float))
 
 
 def _columns(rows):

@@ -18,14 +18,38 @@ What a pair of surfaces does: the mixing rules of materials, and Coulomb's frict
 Every other module asks here, so that a rule of the pair is stated once.
 """
 
-from math import copysign
+from math import copysign, inf
 
 import numpy as np
 
 
-def mixed_restitution(restitution_a, restitution_b):
-    """Return the restitution of a pair of surfaces, or of (k,) pairs: the larger of the two."""
-    return np.maximum(restitution_a, restitution_b)
+_NO_SPEED = 1e-300
+"""[m/s]: added where a speed is divided by that may be zero."""
+
+
+def mixed_restitution(bodies, body_a, body_b, speed=inf):
+    """
+    Return the restitution of pairs (k,) of columns that approach at speeds (k,) [m/s].
+
+    It is the larger of the two surfaces' own at that speed, see `model.Material`.
+    """
+    with_a, with_b = (
+        bodies.restitution[body] * np.clip(
+            speed / (bodies.restitution_speed[body] + _NO_SPEED), 0.0, 1.0)
+        for body in (body_a, body_b))
+    return np.maximum(with_a, with_b)
+
+
+def surfaces_of(bodies, *indices):
+    """Return (restitution, its speed) of each body, as `restitution_of_one` takes them."""
+    return [(bodies.restitution.item(index), bodies.restitution_speed.item(index))
+            for index in indices]
+
+
+def restitution_of_one(surfaces, speed):
+    """Return `mixed_restitution` of one pair in plain floats, for a positive speed [m/s]."""
+    return max(restitution if speed >= full else restitution * speed / full
+               for restitution, full in surfaces)
 
 
 def mixed_friction(friction_a, friction_b):

@@ -34,6 +34,12 @@ class Material:
     friction: float = 0.5
     """Coulomb friction coefficient, 0 or more. A pair has the geometric mean of its two."""
 
+    restitution_speed: float = 0.0
+    """
+    Approach speed [m/s], 0 or more, from which on the restitution is as given; what comes slower
+    rebounds in proportion: restitution times speed over this.
+    """
+
 
 @dataclass(frozen=True)
 class Plane:

@@ -70,8 +70,7 @@ def stick_speed(bodies, acceleration, angular, contacts):
     pull, rate = acceleration[:, involved], angular[:, involved]
     radius = bodies.bounding_radius[involved]
     strongest = (np.sqrt((pull * pull).sum(axis=0)) + (rate * rate).sum(axis=0) * radius).max()
-    restitution = mixed_restitution(bodies.restitution[contacts.body_a],
-                                    bodies.restitution[contacts.body_b])
+    restitution = mixed_restitution(bodies, contacts.body_a, contacts.body_b)
     stick = STICK_SPEED if restitution.min() < 1 else ELASTIC_STICK_SPEED
     return stick * sqrt(strongest * radius.max())
 

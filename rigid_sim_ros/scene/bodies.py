@@ -86,10 +86,13 @@ def read_material(section, default):
     """Return the Material of a section; what it leaves out is as in `default`."""
     if 'material' not in section:
         return default
-    given = Section(section.values['material'], section.label, ('restitution', 'friction'),
+    given = Section(section.values['material'], section.label,
+                    ('restitution', 'friction', 'restitution_speed'),
                     prefix=section.prefix + 'material.')
     return Material(given.read('restitution', values.fraction, default.restitution),
-                    given.read('friction', values.not_negative, default.friction))
+                    given.read('friction', values.not_negative, default.friction),
+                    given.read('restitution_speed', values.not_negative,
+                               default.restitution_speed))
 
 
 def _read_shape(section):

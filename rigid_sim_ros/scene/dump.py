@@ -57,8 +57,11 @@ def _vector(values):
 
 
 def _material(material):
-    return (f'{{restitution: {_number(material.restitution)}, '
-            f'friction: {_number(material.friction)}}}')
+    fields = [f'restitution: {_number(material.restitution)}',
+              f'friction: {_number(material.friction)}']
+    if material.restitution_speed:
+        fields.append(f'restitution_speed: {_number(material.restitution_speed)}')
+    return f'{{{", ".join(fields)}}}'
 
 
 def _name(name):

@@ -19,7 +19,7 @@ import pytest
 
 from rigid_sim_ros.engine import CommandError, rotation, Simulation
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
-from rigid_sim_ros.engine.shapes import Box, Cube
+from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
 from rigid_sim_ros.scene import load_scene
 
 NO_GRAVITY = (0.0, 0.0, 0.0)
@@ -89,6 +89,22 @@ def test_elastic_drop_bounces_for_ever():
         np.testing.assert_allclose(simulation.collisions['time'], (bounce + 0.5) * period,
                                    rtol=1e-12)
     np.testing.assert_allclose(simulation.orientation[0], (0, 0, 0, 1), atol=1e-12)
+
+
+@pytest.mark.parametrize('shape', [Cube(1.0), Sphere(0.5)])
+def test_restitution_may_grow_with_the_speed(shape):
+    """What comes at v leaves at e v^2 / v0: a face with four contacts and a ball, three times."""
+    material = Material(restitution=0.9, friction=0.0, restitution_speed=8.0)
+    body = Body('a', shape, 2.0, shape.inertia(2.0), position=(0, 0, 1.5), material=material)
+    simulation = Simulation(Scene(bodies=(body,), planes=(
+        Plane('ground', material=Material(restitution=0.0)),)))
+    speed = np.sqrt(2 * 9.81)
+    simulation.advance(speed / 9.81 + 1e-6)
+    for _ in range(3):
+        np.testing.assert_allclose(simulation.collisions['speed'], speed, rtol=1e-9)
+        speed *= 0.9 * speed / 8.0
+        assert simulation.linear_velocity[0, 2] == pytest.approx(speed, abs=2e-5)
+        simulation.advance(2 * speed / 9.81)
 
 
 def test_a_dropped_cube_comes_to_rest():

@@ -85,7 +85,7 @@ def test_text_for_readers():
         'bodies': [{'name': 'a', 'cube': {'edge': 0.2}, 'mass': 1, 'position': [0, 0, 1],
                     'velocity': [1e-5, 0, 0]},
                    {'name': 'b', 'sphere': {'radius': 1}, 'fixed': True, 'position': [3, 0, 1],
-                    'material': {'friction': 0}}]})
+                    'material': {'friction': 0, 'restitution_speed': 0.5}}]})
     assert dump_scene(scene) == """\
 gravity: [0.0, 0.0, -9.81]
 material: {restitution: 0.3, friction: 0.5}
@@ -96,7 +96,7 @@ bodies:
 - {name: "a", cube: {edge: 0.2}, mass: 1.0, position: [0.0, 0.0, 1.0], \
 velocity: [1.0e-05, 0.0, 0.0]}
 - {name: "b", sphere: {radius: 1.0}, position: [3.0, 0.0, 1.0], fixed: true, \
-material: {restitution: 0.3, friction: 0.0}}
+material: {restitution: 0.3, friction: 0.0, restitution_speed: 0.5}}
 """
 
 

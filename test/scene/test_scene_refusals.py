@@ -111,6 +111,7 @@ BODIES = {
     FULL + ', material: rubber': ["body 'a': material: 'rubber' .* restitution, friction"],
     FULL + ', material: {restitution: 1.1}': ['material.restitution: 1.1 is not .* 0 to 1'],
     FULL + ', material: {friction: -0.1}': ['material.friction: -0.1 is not .* 0 or more'],
+    FULL + ', material: {restitution_speed: .inf}': ['material.restitution_speed: inf is not'],
     FULL + ', material: {bounce: 1}': ['material.bounce: unknown key'],
     FULL + ', repeat: 3': ['repeat: 3 is not .* mapping'],
     FULL + ', repeat: {count: [1, 1, 1]}': ['repeat.spacing is missing'],
@@ -254,7 +255,8 @@ CONTENT = st.recursive(
         st.lists(inner, max_size=4), st.lists(st.floats(-2, 2), min_size=3, max_size=4),
         st.dictionaries(st.sampled_from(
             [*SCENE_KEYS, *PLANE_KEYS, *BODY_KEYS, 'edge', 'size', 'radius', 'restitution',
-             'friction', 'count', 'spacing', 'jitter', 'seed', 'x', 1]), inner, max_size=5)),
+             'friction', 'restitution_speed',
+             'count', 'spacing', 'jitter', 'seed', 'x', 1]), inner, max_size=5)),
     max_leaves=10)
 
 VALID = {

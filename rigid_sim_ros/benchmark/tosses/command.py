@@ -15,6 +15,7 @@
 """The command `rigid_sim_benchmark tosses`: simulate measured tosses of a real cube."""
 
 from itertools import product
+from math import inf
 from pathlib import Path
 import sys
 
@@ -65,6 +66,9 @@ def add_options(parser):
     parser.add_argument('--frictions', type=float, nargs='+', default=FRICTIONS, metavar='MU')
     parser.add_argument('--restitutions', type=float, nargs='+', default=RESTITUTIONS,
                         metavar='E', help='values to choose from; one of each: no fit')
+    parser.add_argument('--restitution-speed', type=float, metavar='M/S', default=0.0,
+                        help='speed of approach with these restitutions; slower is in proportion '
+                             '(%(default)g: the same at all; methods of this package only)')
     parser.add_argument('--impact-law', choices=tuple(IMPACT_LAWS), default='poisson',
                         help='of the methods of this package (%(default)s)')
     parser.add_argument('--count', type=int, metavar='N', help='only the first N tosses')
@@ -80,7 +84,8 @@ def run(options):
     _check(options)
     tosses = read_tosses(options.data, options.length_scale)[:options.count]
     starts = [fitted_start(toss) for toss in tosses]
-    grid = [{'friction': friction, 'restitution': restitution}
+    grid = [{'friction': friction, 'restitution': restitution,
+             'restitution_speed': options.restitution_speed}
             for friction, restitution in product(options.frictions, options.restitutions)]
     print(f'{len(tosses)} tosses of {options.data}; starts fitted to the flight')
     print(f'{"engine":20}{"":24}position [%]  rotation [deg]  right face [%]  CPU time [s]')
@@ -155,6 +160,9 @@ def _check(options):
             raise BenchmarkError(f'{name} {value}; allowed: 1 or more')
     if not options.length_scale > 0:
         raise BenchmarkError(f'--length-scale {options.length_scale:g}; allowed: above 0')
+    if not 0 <= options.restitution_speed < inf:
+        raise BenchmarkError(
+            f'--restitution-speed {options.restitution_speed:g}; allowed: 0 or more')
     for value in options.restitutions:
         if not 0 <= value <= 1:
             raise BenchmarkError(f'--restitutions {value:g}; allowed: 0 to 1')

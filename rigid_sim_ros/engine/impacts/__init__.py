@@ -96,8 +96,7 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
     response = rows.response()
     velocity = rows.motion(linear_velocity, angular_velocity)
     speed = -velocity[:contacts.count]
-    restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
-    restitution = np.where(speed > speed_threshold, restitution, 0.0)
+    restitution = np.where(speed > speed_threshold, mixed_restitution(bodies, a, b, speed), 0.0)
     friction = mixed_friction(bodies.friction[a], bodies.friction[b])
 
     def attempt(share):
@@ -111,7 +110,7 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
 def _resolve_one(contact, law, speed_threshold):
     """Return the `Impact` of a `OneContact`."""
     speed = -contact.velocity[0]
-    restitution = contact.restitution if speed > speed_threshold else 0.0
+    restitution = contact.restitution(speed) if speed > speed_threshold else 0.0
 
     def attempt(share):
         impulse = law(contact.response, contact.velocity, contact.friction, share * restitution)

@@ -18,7 +18,7 @@ from math import sqrt
 
 import numpy as np
 
-from rigid_sim_ros.engine.friction import tangents_of_one
+from rigid_sim_ros.engine.friction import restitution_of_one, surfaces_of, tangents_of_one
 
 
 class OneContact:
@@ -32,7 +32,7 @@ class OneContact:
         normal = contacts.normal[:, 0].tolist()
         self._axes = (normal, *tangents_of_one(*normal))
         self.friction = sqrt(bodies.friction.item(a) * bodies.friction.item(b))
-        self.restitution = max(bodies.restitution.item(a), bodies.restitution.item(b))
+        self._surfaces = surfaces_of(bodies, a, b)
         self._partners = [
             _Partner(index, sign, bodies, point, position, orientation, self._axes)
             for index, sign in ((a, -1.0), (b, 1.0)) if index < bodies.moving_count]
@@ -40,6 +40,10 @@ class OneContact:
         across = tuple(map(sum, zip(*(
             p.velocity(linear_velocity, angular_velocity) for p in self._partners))))
         self.velocity = tuple(_dot(axis, across) for axis in self._axes)
+
+    def restitution(self, speed):
+        """Return the restitution at a speed of approach [m/s]."""
+        return restitution_of_one(self._surfaces, speed)
 
     def world(self, impulse):
         """Return the world vector (3,) of an impulse in contact axes."""

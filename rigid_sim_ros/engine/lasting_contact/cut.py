@@ -131,8 +131,7 @@ def _struck(motion, near, group, scales, limits, time, rebounds):
     """Return the motion after the impact of contacts (l,) int that act on each other."""
     island, contacts = near.island, near.contacts.select(group)
     world, bodies = island.world, island.bodies
-    restitution = mixed_restitution(
-        bodies.restitution[contacts.body_a], bodies.restitution[contacts.body_b]).max()
+    restitution = mixed_restitution(bodies, contacts.body_a, contacts.body_b).max()
     threshold = np.inf
     if rebounds and restitution > 0:
         threshold = max(0.5 * limits.impact_speed, units.STICK * scales.speed / restitution)

@@ -166,7 +166,8 @@ def _own_bodies(bodies, columns, member_count):
         inverse_mass=bodies.inverse_mass[columns] * mobile,
         inertia=np.where(mobile, bodies.inertia[:, columns], 1.0),
         inverse_inertia=bodies.inverse_inertia[:, columns] * mobile,
-        restitution=bodies.restitution[columns], friction=bodies.friction[columns])
+        restitution=bodies.restitution[columns], friction=bodies.friction[columns],
+        restitution_speed=bodies.restitution_speed[columns])
 
 
 def _length(vectors):

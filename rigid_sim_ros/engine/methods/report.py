@@ -106,7 +106,7 @@ class Report(Stepping):
         turn_a, turn_b = inverse_a @ np.cross(arm_a, normal), inverse_b @ np.cross(arm_b, normal)
         response = (bodies.inverse_mass[a] + bodies.inverse_mass[b]
                     + normal @ np.cross(turn_a, arm_a) + normal @ np.cross(turn_b, arm_b))
-        restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
+        restitution = mixed_restitution(bodies, a, b)
         size = -(1 + restitution) * speed / response
         for body, sign, turn in ((a, -1, turn_a), (b, 1, turn_b)):
             state.linear_velocity[:, body] += sign * size * bodies.inverse_mass[body] * normal

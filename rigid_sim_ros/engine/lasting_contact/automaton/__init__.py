@@ -27,7 +27,7 @@ from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.bodies import PLANE
 from rigid_sim_ros.engine.contacts import Contacts, FACE_A, FACE_B, ROUND
 from rigid_sim_ros.engine.events import IMPACT
-from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution
+from rigid_sim_ros.engine.friction import mixed_friction, surfaces_of
 from rigid_sim_ros.engine.lasting_contact import scales as units
 from rigid_sim_ros.engine.lasting_contact.automaton.automaton import Automaton
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import dot, PlaneBody
@@ -67,8 +67,7 @@ class OnPlane:
         self._inverse_mass = bodies.inverse_mass.item(0)
         self._inertia = bodies.inertia[:, 0].tolist()
         self._friction = float(mixed_friction(bodies.friction[0], bodies.friction[self._plane]))
-        self._restitution = float(mixed_restitution(
-            bodies.restitution[0], bodies.restitution[self._plane]))
+        self._surfaces = surfaces_of(bodies, 0, self._plane)
         self._corners = []
         if bodies.kinds[0] != 'sphere':
             x, y, z = bodies.half_extents[:, 0].tolist()
@@ -110,7 +109,7 @@ class OnPlane:
         body = self._body(state)
         scales = Scales(self._radius, dot(body.acceleration, body.acceleration) ** 0.5)
         return Automaton(body, self._numbers(state), None, scales, units.STICK * scales.speed,
-                         self._restitution, self._island.world.impact_law)
+                         self._surfaces, self._island.world.impact_law)
 
     def _columns(self, state):
         """Return the body's columns of a `State`, forces included, as lists."""

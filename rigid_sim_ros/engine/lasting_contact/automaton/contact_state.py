@@ -23,6 +23,7 @@ that takes from it is what the bounces left out would have, to second order.
 
 from math import sqrt
 
+from rigid_sim_ros.engine.friction import restitution_of_one
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import accelerations, held
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import displaced, normalized
@@ -73,13 +74,14 @@ class ContactState:
     scales : Scales
     stick : float [m/s]
         What rebounds slower stays.
-    restitution : float
+    surfaces : list of (restitution, its speed [m/s])
+        Of the body and the plane, see `friction.restitution_of_one`.
     law : str
         A key of `impacts.IMPACT_LAWS`.
 
     """
 
-    def __init__(self, body, state, closed, scales, stick, restitution, law):
+    def __init__(self, body, state, closed, scales, stick, surfaces, law):
         """See the class."""
         self.body = body
         self.state = normalized(state)
@@ -88,7 +90,7 @@ class ContactState:
         self.scales = scales
         self._stick = stick
         self._least_slip = self._slip = SLIP * scales.speed
-        self._restitution, self._law = restitution, law
+        self._surfaces, self._law = surfaces, law
         self._impacts = 0
         gaps = body.gaps(self.state)
         low = [point for point in body.points if gaps[point] < TOUCH * scales.length]
@@ -227,18 +229,26 @@ class ContactState:
         if self._impacts > MANY_IMPACTS:
             self._slip = max(self._slip, self._stick)
         before = self.state
-        if not self._rebound(points, self._restitution):
+        if not self._rebound(points, self._restitution_of):
             self.state = before
-            self._rebound(points, 0.0)
+            self._rebound(points, lambda speed: 0.0)
+
+    def _restitution_of(self, speed):
+        """Return the restitution at a speed of approach [m/s]; none if it makes no bounce."""
+        restitution = restitution_of_one(self._surfaces, speed) if speed > 0.0 else 0.0
+        return restitution if speed * restitution > self._stick else 0.0
 
     def _rebound(self, points, restitution):
-        """Resolve the impact with a restitution; return whether no point is left approaching."""
+        """
+        Resolve the impact with a restitution, a function of the speed of approach [m/s].
+
+        Return whether no point is left approaching, or none rebounds anyway.
+        """
         body, state = self.body, self.state
         turn = body.turn(state)
         arms = body.arms(turn, points)
         velocities = body.velocities(state, arms)
-        shares = [restitution if -z * restitution > self._stick else 0.0
-                  for _, _, z in velocities]
+        shares = [restitution(-z) for _, _, z in velocities]
         hits = []
         if min(z for _, _, z in velocities) < 0.0:
             impulses = plane_impulses(body, turn, arms, velocities, shares, self._law)
@@ -252,9 +262,10 @@ class ContactState:
         if closed:
             self.hold(closed, True)
         left = body.velocities(self.state, arms)
-        good = all(z >= 0.0 for point, (_, _, z) in zip(points, left) if point not in closed)
-        if good or restitution == 0.0:
+        done = not any(shares) or all(
+            z >= 0.0 for point, (_, _, z) in zip(points, left) if point not in closed)
+        if done:
             self.closed = closed
             self._unarmed.update(point for point in points if point not in closed)
             self.hits += hits
-        return good
+        return done

@@ -101,7 +101,7 @@ class PileContacts:
         self._units = size.min(initial=np.inf) / size
         rows *= self._units[:, :, None, None]
         self.gap = contacts.separation
-        self.restitution = mixed_restitution(bodies.restitution[a], bodies.restitution[b])
+        self._bodies = bodies
         slots = np.minimum(np.stack((a, b)), members)
         self._places = np.arange(len(a))
         self.rows = (self._dense(rows, slots) if len(a) * (members + 1) <= DENSE
@@ -159,6 +159,11 @@ class PileContacts:
         return vector, 1 / (_MARGIN * largest) if largest > 0 else 1.0
 
     # -- vectors by row --------------------------------------------------------------------------
+
+    def restitution(self, speed):
+        """Return the restitution of points (n,) that approach at speeds (n,) [m/s]."""
+        contacts = self.contacts
+        return mixed_restitution(self._bodies, contacts.body_a, contacts.body_b, speed)
 
     def row_motion(self, values, missing=0.0):
         """Return motions (3, k) by axis and contact as a vector by row."""

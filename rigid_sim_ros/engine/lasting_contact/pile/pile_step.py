@@ -125,17 +125,21 @@ class PileStep:
         contacts.gap = contacts.gap + self._duration * contacts.motion(
             contacts.rows.motion(velocity))[0]
         impulse, closed = contacts.forces(self.forces), self.closed
-        rebounding = self.hits & closed & (contacts.restitution > 0.0)
-        if rebounding.any():
-            impulse = impulse + self._rebound(closed, rebounding)
+        rebound = np.where(self.hits & closed,
+                           contacts.restitution(-self.speed) * self.speed, 0.0)
+        if rebound.any():
+            impulse = impulse + self._rebound(closed, rebound)
         return self.hits & closed & ~self._pressed, impulse
 
-    def _rebound(self, closed, rebounding):
-        """Change the velocities at the end and return the impulses (3, k) that do it."""
+    def _rebound(self, closed, rebound):
+        """
+        Change the velocities at the end and return the impulses (3, k) that do it.
+
+        Of closed contacts (k,) bool and the velocities (k,) [m/s], negative, they rebound from.
+        """
         contacts = self.contacts
         asked = np.zeros((3, len(closed)))
-        asked[0] = np.where(rebounding, contacts.restitution * self.speed, 0.0)
-        asked[0] = np.where(closed, asked[0], NEVER)
+        asked[0] = np.where(closed, rebound, NEVER)
         self.contacts = PileContacts(
             self._island.bodies, contacts.found.carried(self._start, self.end),
             self.end.orientation, contacts.vector)
