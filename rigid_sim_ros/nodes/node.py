@@ -131,7 +131,11 @@ class SimulationNode:
     def close(self):
         """Finish the recording, say so, and leave the ROS graph."""
         if self.recording.active:
-            self.ros.get_logger().info(self.recording.stop())
+            went_well, text = self.recording.stop()
+            if went_well:
+                self.ros.get_logger().info(text)
+            else:
+                self.ros.get_logger().error(text)
         self.recording.stop()
         self.ros.destroy_node()
 
@@ -169,8 +173,7 @@ class SimulationNode:
     def record(self, wanted):
         """Start or stop recording; return whether that worked, and a text."""
         if not wanted:
-            was_active = self.recording.active
-            return was_active, self.recording.stop()
+            return self.recording.stop()
         try:
             self.recording.start(self.session.time)
         except RecordingError as error:

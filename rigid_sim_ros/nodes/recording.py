@@ -94,14 +94,16 @@ class Recording:
         self.write(JOURNAL.name, time, self._line_of_parameters())
 
     def stop(self):
-        """Finish the recording, if there is one, and say how it went, as a phrase."""
+        """Finish the recording, if there is one; return whether it went well, and a phrase."""
         if self._recorder is None:
-            return 'not recording'
+            return False, 'not recording'
         recorder, self._recorder = self._recorder, None
         state = recorder.close()
+        if state.error:
+            return False, state.error
         lost = f', {state.dropped_count} lost' if state.dropped_count else ''
-        return state.error or (f'recorded {state.message_count} messages, '
-                               f'{state.byte_count / 1e6:.1f} MB{lost}, to {state.path}')
+        return True, (f'recorded {state.message_count} messages, '
+                      f'{state.byte_count / 1e6:.1f} MB{lost}, to {state.path}')
 
     def wants(self, row):
         """Tell whether messages of a row of `PUBLISHED` are recorded now."""

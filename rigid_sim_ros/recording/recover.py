@@ -95,29 +95,42 @@ def _check_may_rewrite(scan):
 def _rewrite(path, summaries, report):
     scan = McapScan(path)
     new = path + '.recovered'
-    if os.path.exists(new):
-        os.remove(new)  # left by a recovery that was itself interrupted
-    file, channels = None, {}
-    for channel, sequence, time_ns, data in scan.messages():
-        if file is None:
-            file = _begin(new, scan, channels)
-        if channel in channels:
-            file.add(channels[channel], time_ns, bytes(data), sequence)
-            if file.chunk_size >= CHUNK_BYTES:
-                file.close_chunk()
-    if file is None:
-        file = _begin(new, scan, channels)
-    file.close_chunk()
-    file.summary.path = scan.name
-    file.write_metadata('rosbag2', {'serialized_metadata': to_yaml(
-        bag_metadata(tuple(scan.topics.values()), [*summaries, file.summary]))})
-    file.finish()
-    sync_path(new)
+    _remove(new)  # left by a recovery that was itself interrupted
+    try:
+        file = _write_anew(new, scan, summaries)
+        sync_path(new)
+    except OSError:
+        _remove(new)  # the disk may be full
+        raise
     if scan.finished or len(scan.damage) > 1:
         os.replace(path, path + '.damaged')
     os.replace(new, path)
     report += [*scan.damage, f'{scan.name} finished with {file.summary.message_count} messages']
     return file.summary
+
+
+def _remove(path):
+    if os.path.exists(path):
+        os.remove(path)
+
+
+def _write_anew(path, scan, summaries):
+    file, channels = None, {}
+    for channel, sequence, time_ns, data in scan.messages():
+        if file is None:
+            file = _begin(path, scan, channels)
+        if channel in channels:
+            file.add(channels[channel], time_ns, bytes(data), sequence)
+            if file.chunk_size >= CHUNK_BYTES:
+                file.close_chunk()
+    if file is None:
+        file = _begin(path, scan, channels)
+    file.close_chunk()
+    file.summary.path = scan.name
+    file.write_metadata('rosbag2', {'serialized_metadata': to_yaml(
+        bag_metadata(tuple(scan.topics.values()), [*summaries, file.summary]))})
+    file.finish()
+    return file
 
 
 def _begin(path, scan, channels):

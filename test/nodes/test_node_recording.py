@@ -26,6 +26,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 from node_harness import Client, CROWD, nanoseconds, NodeProcess  # noqa: E402, I100
 from rclpy.serialization import deserialize_message  # noqa: E402
+from rigid_sim_ros import recording  # noqa: E402
 from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
 
 MILLISECOND = 1_000_000
@@ -101,6 +102,20 @@ def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
         assert_array_equal(steps, 10 * MILLISECOND)
         # each begins with the scene, for whoever opens it alone
         assert len(messages_of(tmp_path / name, '/rigid_sim/scene')) == 1
+
+
+def test_a_folder_that_was_moved_away_is_told_when_it_is_stopped(tmp_path):
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    with NodeProcess(tmp_path, scene='crowd.yaml', record=True, record_path='bag') as process, \
+            Client(process) as client:
+        poses = client.listen('~/poses')
+        client.spin_until(lambda: len(poses) > 10, 'ten states')
+        (tmp_path / 'bag').rename(tmp_path / 'moved')
+        ended = client.call('~/record', data=False)
+        assert not ended.success and 'No such file or directory' in ended.message
+        assert process.running
+    # the file itself is whole
+    assert len(recording.read(tmp_path / 'moved').time) > 10
 
 
 def test_path_that_exists_is_refused(tmp_path):

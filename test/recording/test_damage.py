@@ -24,6 +24,7 @@ import time
 import numpy as np
 import pytest
 from rigid_sim_ros import recording
+from rigid_sim_ros.recording import mcap_file
 
 FEW = 12
 MANY = 1000
@@ -158,6 +159,23 @@ def test_recovery_keeps_a_damaged_file_beside_the_new_one(bag, tmp_path, run):
     after = recording.read(tmp_path / 'sound')
     assert after.time_ns.tolist() == found.time_ns.tolist()
     check_with_others(tmp_path / 'sound', after, run)
+
+
+def test_recovery_that_fails_leaves_nothing_behind(bag, tmp_path, monkeypatch):
+    file = copy_of(bag, tmp_path)
+    os.truncate(file, file.stat().st_size // 2)
+    before = {path.name: path.read_bytes() for path in file.parent.iterdir()}
+    write = mcap_file.McapFile._put
+
+    def put(written, *parts):
+        if written.size > 5000:
+            raise OSError(28, 'No space left on device')
+        write(written, *parts)
+
+    monkeypatch.setattr(mcap_file.McapFile, '_put', put)
+    with pytest.raises(recording.RecordingError, match='No space left on device'):
+        recording.recover(tmp_path / 'sound')
+    assert {path.name: path.read_bytes() for path in file.parent.iterdir()} == before
 
 
 def test_a_bag_that_is_being_recorded_is_not_recovered(tmp_path, run):
