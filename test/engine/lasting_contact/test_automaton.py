@@ -22,6 +22,7 @@ import pytest
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import general_forces
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
@@ -162,6 +163,21 @@ def test_ball_slides_then_rolls_up_a_slope():
                         gravity=(pull, 0.0, -GRAVITY))
     rolling.run(1.0)
     assert rolling.state.position[0, 0] == pytest.approx(5 / 7 * pull / 2, rel=1e-9)
+
+
+def test_a_rolling_ball_turns_as_one_in_flight_under_that_torque():
+    """Its spin grows as that of a ball under a constant torque, whose attitude is known."""
+    radius, growth, spin = 0.2, 5 / 7 * 2.0 / 0.2, (0.0, 0.0, 40.0)
+    ball = body('ball', Sphere(radius), 3.0, position=(0, 0, radius), angular_velocity=spin)
+    run = IslandRun([ball], friction=0.9, gravity=(2.0, 0.0, -GRAVITY))
+    run.run(1.0)
+    flying = Flights(np.array([ball.inertia]).T)
+    flying.begin(np.array([0]), 0.0, *(np.array([row], dtype=float).T for row in (
+        (0, 0, 0), (0, 0, 0, 1), (0, 0, 0), spin, (0, 0, 0),
+        (0, growth * ball.inertia[0], 0))))
+    _, attitude, _, rate = flying.motion(0, 1.0)
+    np.testing.assert_allclose(run.state.angular_velocity[:, 0], rate, rtol=1e-10)
+    assert rotation.angle_between(run.state.orientation[:, 0], np.array(attitude)) < 1e-8
 
 
 def thrown(seed, restitution, friction, size=(1.0, 1.0, 1.0), turn=(0.0, 0.0, 0.0, 1.0), **more):

@@ -22,9 +22,10 @@ are hit together; sliding ends, and the point may stick.
 """
 
 from rigid_sim_ros.engine.lasting_contact.automaton import events
+from rigid_sim_ros.engine.lasting_contact.automaton.ball_attitude import turned_on
 from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import ContactState
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
-from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized
+from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized, ORIENTATION
 
 TOLERANCE = 1e-8
 """Of length, speed and angle: the error allowed in a step."""
@@ -66,6 +67,9 @@ class Automaton(ContactState):
         rate = scales.speed / scales.length
         self._weights = [1 / (TOLERANCE * unit) for unit in (
             *[scales.length] * 3, *[1.0] * 4, *[scales.speed] * 3, *[rate] * 3)]
+        if body.is_ball:
+            # nothing depends on its attitude, which follows from the spin
+            self._weights[ORIENTATION] = [0.0] * 4
         self._rates = self.begin()
         self._ahead = None
 
@@ -80,7 +84,7 @@ class Automaton(ContactState):
                 self._ahead = self._next_step()
             step = self._ahead[0]
             if self.time + step.size > until:
-                self.now = normalized(step.between(until - self.time))
+                self.now = self._state_in(step, until - self.time)
                 return True
             self._take(*self._ahead)
             self._ahead = None
@@ -116,7 +120,7 @@ class Automaton(ContactState):
     def _take(self, step, event, solved):
         """Go to the end of a step and do what happens there."""
         self.time += step.size
-        self.state = normalized(step.end)
+        self.state = self._state_in(step, step.size)
         self._rates, self.solved = step.last, solved
         self.rearm()
         if event is not None:
@@ -124,6 +128,13 @@ class Automaton(ContactState):
             self._rates = self.begin()
         elif self.lifting() or self.drifting():
             self._rates = self.begin()
+
+    def _state_in(self, step, time):
+        """Return the state at a time [s] since a step began."""
+        state = step.end if time == step.size else step.between(time)
+        if not self.body.is_ball:
+            return normalized(state)
+        return turned_on(step.start, state, step.between, time)
 
     def _step(self, rates, size):
         """Return (step, event at its end or None, size of the next) of at most `size` [s]."""
