@@ -57,6 +57,16 @@ def contact_groups(bodies, contacts):
     return [contacts.select(labels == label) for label in np.unique(labels)]
 
 
+def lone_contacts(bodies, contacts):
+    """Return which `Contacts`, (k,) bool, are the only one of each moving body in them."""
+    if contacts.count <= 1:
+        return np.ones(contacts.count, dtype=bool)
+    sides = [contacts.body_a, contacts.body_b]
+    touching = np.bincount(np.concatenate(sides), minlength=bodies.count)
+    touching[bodies.moving_count:] = 0
+    return (touching[sides[0]] <= 1) & (touching[sides[1]] <= 1)
+
+
 def connected(pairs, moving_count):
     """
     Return the places (l,) int of a list of pairs (a, b) in groups that share a body, ascending.

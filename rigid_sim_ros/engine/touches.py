@@ -14,17 +14,21 @@
 
 """Touches at the end of flights: which points meet, their impulses, and who goes on touching."""
 
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
-from rigid_sim_ros.engine.friction import mixed_restitution
-from rigid_sim_ros.engine.graph import contact_groups
-from rigid_sim_ros.engine.impacts import resolve_impact
+from rigid_sim_ros.engine.friction import restitution_of_one, surfaces_of
+from rigid_sim_ros.engine.graph import contact_groups, lone_contacts
+from rigid_sim_ros.engine.impacts import OneContact, resolve_impact, resolve_one
 from rigid_sim_ros.engine.narrow_phase import find_contacts
+from rigid_sim_ros.engine.plain_vectors import dot, length
+
+FEW = 8
+"""Up to so many bodies are placed one by one in plain floats, which is faster (measured)."""
 
 TOUCH_MARGIN = 1e-9
 """
@@ -63,30 +67,42 @@ class Touch(NamedTuple):
     """(m,) bool: which go on touching something."""
 
 
-def stick_speed(bodies, acceleration, angular, contacts):
-    """Return the speed [m/s] below which contacts of these bodies do not part again."""
-    involved = {*contacts.body_a.tolist(), *contacts.body_b.tolist()}
-    involved = [index for index in involved if bodies.inverse_mass[index] > 0]
-    pull, rate = acceleration[:, involved], angular[:, involved]
-    radius = bodies.bounding_radius[involved]
-    strongest = (np.sqrt((pull * pull).sum(axis=0)) + (rate * rate).sum(axis=0) * radius).max()
-    restitution = mixed_restitution(bodies, contacts.body_a, contacts.body_b)
-    stick = STICK_SPEED if restitution.min() < 1 else ELASTIC_STICK_SPEED
-    return stick * sqrt(strongest * radius.max())
+def stick_speed(bodies, acceleration, angular, body_a, body_b):
+    """Return the speed [m/s] below which contacts of these bodies, lists (k,), do not part."""
+    strongest = largest = 0.0
+    for index in {*body_a, *body_b}:
+        if index < bodies.moving_count:
+            radius = bodies.bounding_radius.item(index)
+            rate = angular[:, index].tolist()
+            strongest = max(strongest, length(acceleration[:, index].tolist())
+                            + dot(rate, rate) * radius)
+            largest = max(largest, radius)
+    elastic = all(restitution_of_one(surfaces_of(bodies, a, b), inf) >= 1
+                  for a, b in zip(body_a, body_b))
+    return (ELASTIC_STICK_SPEED if elastic else STICK_SPEED) * sqrt(strongest * largest)
 
 
 class Touches:
-    """Resolves touches; keeps arrays of all columns, in which only those involved are filled."""
+    """
+    Resolves touches; keeps arrays of all columns, of which those involved are filled in.
 
-    def __init__(self, world, flights):
+    Parameters
+    ----------
+    world : World
+    flights : Flights
+    state : State
+        Where bodies that do not move are.
+
+    """
+
+    def __init__(self, world, flights, state):
+        """See the class."""
         self._world = world
         self._flights = flights
-        count = world.bodies.count
-        self._position = np.zeros((3, count))
-        self._orientation = np.zeros((4, count))
-        self._orientation[3] = 1.0
-        self._linear = np.zeros((3, count))
-        self._angular = np.zeros((3, count))
+        self._position = state.position.copy()
+        self._orientation = state.orientation.copy()
+        self._linear = state.linear_velocity.copy()
+        self._angular = state.angular_velocity.copy()
 
     def resolve(self, time, indices, body_a, body_b, margin=TOUCH_MARGIN):
         """
@@ -95,30 +111,61 @@ class Touches:
         Groups of bodies that have nothing to do with each other are solved by themselves. Impulses
         are noted as events.
         """
-        self._place(time, np.array(sorted(
-            {*indices.tolist(), *body_a.tolist(), *body_b.tolist()})))
+        self._place(time, indices)
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
         self._world.work.narrow_phases += len(body_a)
         contacts = find_contacts(bodies, body_a, body_b, self._position, self._orientation,
                                  margin * size)
         stays = np.zeros(bodies.count, dtype=bool)
-        for group in contact_groups(bodies, contacts):
-            self._apply(time, group, stays)
-        return Touch(self._position[:, indices], self._orientation[:, indices],
-                     self._linear[:, indices], self._angular[:, indices], stays[indices])
+        lone = lone_contacts(bodies, contacts)
+        if lone.any():
+            self._apply_lone(time, contacts, lone, stays)
+        if not lone.all():
+            for group in contact_groups(bodies, contacts.select(~lone)):
+                self._apply(time, group, stays)
+        return Touch(*(values.take(indices, axis=-1) for values in (
+            self._position, self._orientation, self._linear, self._angular, stays)))
 
-    def _place(self, time, columns):
+    def _place(self, time, indices):
         """Fill in the poses and velocities of these bodies (k,)."""
-        self._position[:, columns], self._orientation[:, columns] = (
-            self._flights.poses(time, columns))
-        self._linear[:, columns], self._angular[:, columns] = (
-            self._flights.velocities(time, columns))
+        if len(indices) <= FEW:
+            for index in indices.tolist():
+                (self._position[:, index], self._orientation[:, index], self._linear[:, index],
+                 self._angular[:, index]) = self._flights.motion(index, time)
+            return
+        self._position[:, indices], self._orientation[:, indices] = (
+            self._flights.poses(time, indices))
+        self._linear[:, indices], self._angular[:, indices] = (
+            self._flights.velocities(time, indices))
+
+    def _apply_lone(self, time, contacts, lone, stays):
+        """Apply the impulses of contacts whose bodies are in no other, in plain floats."""
+        world = self._world
+        motion = self._position, self._orientation, self._linear, self._angular
+        for a, b, point, normal in zip(
+                contacts.body_a[lone].tolist(), contacts.body_b[lone].tolist(),
+                contacts.point.T[lone].tolist(), contacts.normal.T[lone].tolist()):
+            contact = OneContact(world.bodies, a, b, point, normal, *motion)
+            threshold = stick_speed(world.bodies, self._flights.acceleration, self._angular,
+                                    (a,), (b,))
+            parting = contact.velocity[0]
+            if parting < 0.0:
+                impulse = resolve_one(contact, world.impact_law, threshold)
+                world.work.impacts += 1
+                if -parting > threshold:
+                    world.events.append(time, a, b, IMPACT, point, normal,
+                                        contact.world(impulse), -parting)
+                parting = contact.parting_speed(impulse)
+                for index, linear, angular in contact.velocities(impulse):
+                    self._linear[:, index], self._angular[:, index] = linear, angular
+            if parting <= threshold:
+                stays[a] = stays[b] = True
 
     def _apply(self, time, contacts, stays):
         """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
         threshold = stick_speed(self._world.bodies, self._flights.acceleration, self._angular,
-                                contacts)
+                                contacts.body_a.tolist(), contacts.body_b.tolist())
         if self._parting_speed(contacts).min() < 0.0:
             self._strike(time, contacts, threshold)
         lasting = self._parting_speed(contacts) <= threshold

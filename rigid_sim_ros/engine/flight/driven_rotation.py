@@ -21,6 +21,7 @@ again. How a stride is made is in `strides`, one law for equal moments and one f
 """
 
 from bisect import bisect_right
+from functools import partial
 
 import numpy as np
 
@@ -144,7 +145,7 @@ class DrivenRotations:
         One by one: a body may be listed at several times, in different strides.
         """
         for place in self._table.select(indices)[0].tolist():
-            orientation[:, place], rate[:, place] = self.motion_of_one(
+            orientation[:, place], rate[:, place] = self._motion_of_one(
                 int(indices[place]), times.item(place))
 
     def write_bounds(self, indices, start, end, rate, derivative):
@@ -155,13 +156,15 @@ class DrivenRotations:
             start, end = (np.broadcast_to(time, len(indices))[places] for time in (start, end))
             rate[places], derivative[places] = self._law.bounds(constants, start, end)
 
-    def motion_of_one(self, body, time):
-        """Return quaternion and world rate of one body in plain floats."""
-        chain = self._chains[body]
-        number = chain.reach(time)
-        unit, series = chain.stride(number)
-        fraction = (time - chain.times[number]) / unit
-        return self._law.motion_of_one(FLOATS, chain.constants, unit, series, time, fraction)
+    def trajectory(self, body):
+        """Return quaternion and world rate of one body as a function of time."""
+        return partial(self._motion_of_one, body)
+
+    def bounds_of_one(self, body, start, end):
+        """Return upper bounds of |w| and |dw/dt| of one body between two times [s]."""
+        constants = _rows([self._chains[body].constants])
+        return tuple(bound.item() for bound in self._law.bounds(
+            constants, *(np.array([time]) for time in (start, end))))
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""
@@ -181,6 +184,14 @@ class DrivenRotations:
         return result
 
     # -- inside --------------------------------------------------------------------------------
+
+    def _motion_of_one(self, body, time):
+        """Return quaternion and world rate of one body in plain floats."""
+        chain = self._chains[body]
+        number = chain.reach(time)
+        unit, series = chain.stride(number)
+        fraction = (time - chain.times[number]) / unit
+        return self._law.motion_of_one(FLOATS, chain.constants, unit, series, time, fraction)
 
     def _start(self, body, time, constants, state):
         self._chains[body] = Chain(self._law, constants, time, state)

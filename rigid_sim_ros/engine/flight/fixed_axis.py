@@ -117,14 +117,25 @@ class FixedAxisRotations:
         half_angle = elapsed * (column[HALF_RATE] + elapsed * column[QUARTER_GROWTH])
         return column[COSINE] * np.cos(half_angle) + column[SINE] * np.sin(half_angle)
 
-    def motion_of_one(self, body, elapsed):
-        """Return quaternion and rate of one body in plain floats."""
+    def trajectory(self, body):
+        """Return quaternion and rate of one body as a function of the time since its start."""
         (a, b, c, d, e, f, g, h, half_rate, quarter_growth,
          x, y, z, u, v, w) = self._table[:, body].tolist()
-        half_angle = elapsed * (half_rate + elapsed * quarter_growth)
-        p, q = cos(half_angle), sin(half_angle)
-        return ((p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h),
-                (x + elapsed * u, y + elapsed * v, z + elapsed * w))
+
+        def motion(elapsed):
+            half_angle = elapsed * (half_rate + elapsed * quarter_growth)
+            p, q = cos(half_angle), sin(half_angle)
+            return ((p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h),
+                    (x + elapsed * u, y + elapsed * v, z + elapsed * w))
+        return motion
+
+    def bounds_of_one(self, body, start, end):
+        """Return `bounds` of one body in plain floats."""
+        speed = ROUNDING * 2 * self._table.item(HALF_RATE, body)
+        growth = ROUNDING * 4 * self._table.item(QUARTER_GROWTH, body)
+        if growth == 0:
+            return abs(speed), 0.0
+        return max(abs(speed + growth * max(start, 0.0)), abs(speed + growth * end)), abs(growth)
 
     def bounds(self, indices, start, end):
         """

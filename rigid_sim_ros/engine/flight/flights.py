@@ -29,6 +29,9 @@ from rigid_sim_ros.engine.flight.translations import Translations
 FIXED_AXIS, FREE, DRIVEN_EQUAL, DRIVEN_UNEQUAL = range(4)
 """Kinds of rotation: about an axis that stays, without torque, with it by the moments."""
 
+FEW = 8
+"""Up to so many flights are begun one by one in plain floats, which is faster (measured)."""
+
 STILL = (0.0, 0.0, 1.0), 0.0, 0.0
 """Axis, speed and growth in the table of fixed axes of a body whose rotation is elsewhere."""
 
@@ -75,11 +78,11 @@ class Flights:
         accelerations of the centre of mass (3, k) [m/s^2] and torques (3, k) [N m]; the last
         two stay constant through the flight.
         """
-        if len(indices) == 1:
-            self._begin_one(int(indices[0]), time, *[
-                values.ravel().tolist() for values in (
+        if len(indices) <= FEW:
+            for index, *columns in zip(indices.tolist(), *(values.T.tolist() for values in (
                     position, orientation, linear_velocity, angular_velocity, acceleration,
-                    torque)])
+                    torque))):
+                self._begin_one(index, time, *columns)
             return
         self._translations.begin(indices, time, position, linear_velocity, acceleration)
         moments = self._inertia[:, indices]
@@ -159,13 +162,21 @@ class Flights:
 
         Position [m], unit quaternion, velocity [m/s] and rate [rad/s], as tuples.
         """
-        elapsed, position, velocity = self._translations.motion_of_one(index, time)
+        return self.trajectory(index)(time)
+
+    def trajectory(self, index):
+        """Return `motion` of one body as a function of time, until it begins another flight."""
+        start = self._translations.start.item(index)
         kind = self._kind.item(index)
-        if kind == FIXED_AXIS:
-            quaternion, rate = self._fixed_axis.motion_of_one(index, elapsed)
-        else:
-            quaternion, rate = self._others[kind].motion_of_one(index, time)
-        return position, quaternion, velocity, rate
+        move = self._translations.trajectory(index)
+        fixed = kind == FIXED_AXIS
+        turn = (self._fixed_axis if fixed else self._others[kind]).trajectory(index)
+
+        def motion(time):
+            position, velocity = move(time - start)
+            quaternion, rate = turn(time - start if fixed else time)
+            return position, quaternion, velocity, rate
+        return motion
 
     def motions(self, indices, times):
         """
@@ -195,6 +206,14 @@ class Flights:
     def rate_derivative_bound(self, indices, start, end):
         """Return upper bounds of |dw/dt|, (k,) [rad/s^2], in the same way as `rate_bound`."""
         return self._bounds(indices, start, end)[1]
+
+    def bounds_of_one(self, index, start, end):
+        """Return `rate_bound` and `rate_derivative_bound` of one body in plain floats."""
+        kind = self._kind.item(index)
+        if kind != FIXED_AXIS:
+            return self._others[kind].bounds_of_one(index, start, end)
+        began = self._translations.start.item(index)
+        return self._fixed_axis.bounds_of_one(index, start - began, end - began)
 
     def vertex_acceleration_bound(self, indices, radius, start, end):
         """

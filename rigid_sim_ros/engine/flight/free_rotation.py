@@ -19,6 +19,7 @@ A body's constants fill one column of a table, so that many bodies are evaluated
 body in plain floats, or one body at many times, by the same lines.
 """
 
+from functools import partial
 from math import cos, sin, sqrt
 
 import numpy as np
@@ -135,10 +136,16 @@ class FreeRotations:
             rate[places] = columns[RATE_BOUND]
             derivative[places] = columns[DERIVATIVE_BOUND]
 
-    def motion_of_one(self, body, time):
-        """Return quaternion and world rate of one body in plain floats."""
+    def trajectory(self, body):
+        """Return quaternion and world rate of one body as a function of time."""
         form, table = self._form_of(body)
-        return _motion(form, table.column(body), time)
+        return partial(_motion, form, table.column(body))
+
+    def bounds_of_one(self, body, start, end):
+        """Return upper bounds of |w| and |dw/dt| of one body."""
+        _, table = self._form_of(body)
+        column = table.column(body)
+        return column[RATE_BOUND], column[DERIVATIVE_BOUND]
 
     def orientations_of_one(self, body, times):
         """Return the quaternions of one body at times (K,), (4, K)."""

@@ -79,9 +79,11 @@ class Translations:
         velocity = column[HALF_ACCELERATION] * elapsed + column[VELOCITY]
         return velocity * elapsed + column[POSITION]
 
-    def motion_of_one(self, body, time):
-        """Return the time since the start, position and velocity of one body, plain floats."""
-        start, x, y, z, u, v, w, a, b, c = self._table[:10, body].tolist()
-        t = time - start
-        return (t, (x + t * (u + t * a), y + t * (v + t * b), z + t * (w + t * c)),
-                (u + 2 * a * t, v + 2 * b * t, w + 2 * c * t))
+    def trajectory(self, body):
+        """Return position and velocity of one body as a function of the time since its start."""
+        x, y, z, u, v, w, a, b, c = self._table[1:10, body].tolist()
+
+        def motion(t):
+            return ((x + t * (u + t * a), y + t * (v + t * b), z + t * (w + t * c)),
+                    (u + 2 * a * t, v + 2 * b * t, w + 2 * c * t))
+        return motion

@@ -37,6 +37,8 @@ from rigid_sim_ros.engine.impacts import laws, stronge
 from rigid_sim_ros.engine.impacts.one_contact import OneContact
 from rigid_sim_ros.engine.solvers import contact_rows
 
+__all__ = ['Impact', 'IMPACT_LAWS', 'ImpactLaw', 'OneContact', 'resolve_impact', 'resolve_one']
+
 
 class ImpactLaw(NamedTuple):
     """
@@ -87,11 +89,12 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
     rebound. Energy never grows: should a law raise it, all restitutions are lowered together
     until it does not.
     """
-    if contacts.count == 1:
-        contact = OneContact(bodies, contacts, position, orientation, linear_velocity,
-                             angular_velocity)
-        return _resolve_one(contact, IMPACT_LAWS[law].one, speed_threshold)
     a, b = contacts.body_a, contacts.body_b
+    if contacts.count == 1:
+        return _impact_of_one(OneContact(
+            bodies, a.item(), b.item(), contacts.point[:, 0].tolist(),
+            contacts.normal[:, 0].tolist(), position, orientation, linear_velocity,
+            angular_velocity), law, speed_threshold)
     rows = contact_rows(bodies, contacts, position, orientation)
     response = rows.response()
     velocity = rows.motion(linear_velocity, angular_velocity)
@@ -107,15 +110,22 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
     return Impact(rows.touched, *rows.change(impulse), rows.world(impulse), speed)
 
 
-def _resolve_one(contact, law, speed_threshold):
-    """Return the `Impact` of a `OneContact`."""
+def resolve_one(contact, law, speed_threshold):
+    """Return the impulse (3,) of a `OneContact` in contact axes; as `resolve_impact`."""
     speed = -contact.velocity[0]
     restitution = contact.restitution(speed) if speed > speed_threshold else 0.0
+    one = IMPACT_LAWS[law].one
 
     def attempt(share):
-        impulse = law(contact.response, contact.velocity, contact.friction, share * restitution)
+        impulse = one(contact.response, contact.velocity, contact.friction, share * restitution)
         return impulse, laws.energy_change_of_one(contact.response, contact.velocity, impulse)
 
-    impulse = contact.world(laws.dissipating(attempt))
-    touched, linear, angular = contact.change(impulse)
-    return Impact(touched, linear, angular, np.array(impulse)[:, None], np.array((speed,)))
+    return laws.dissipating(attempt)
+
+
+def _impact_of_one(contact, law, speed_threshold):
+    """Return the `Impact` of a `OneContact`."""
+    impulse = resolve_one(contact, law, speed_threshold)
+    touched, linear, angular = zip(*sorted(contact.changes(impulse)))
+    return Impact(np.array(touched), np.array(linear).T, np.array(angular).T,
+                  np.array(contact.world(impulse))[:, None], np.array((-contact.velocity[0],)))

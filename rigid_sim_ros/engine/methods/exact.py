@@ -40,7 +40,7 @@ class Exact:
         self._force, self._torque = state.force, state.torque
         self._acceleration = world.acceleration(state.force)
         self._flights = Flights(world.bodies.inertia)
-        self._touches = Touches(world, self._flights)
+        self._touches = Touches(world, self._flights, state)
         self._encounters = Encounters(world, self._flights)
         self._islands = Islands(world, self._flights)
         self._state = None

@@ -97,15 +97,12 @@ def _first_touch(bodies, flights, a, b, start, end, armed):
         a, b, kinds = b, a, kinds[::-1]
     if kinds not in PAIRS:
         raise ValueError(f'{kinds[1]} and {kinds[0]} cannot meet; allowed: {list(PAIRS)}')
-    index = np.array((a, b))
-    spins, changes = (bound(index, start, end).tolist() for bound in (
-        flights.rate_bound, flights.rate_derivative_bound))
-    one = PlainBody(bodies, flights, a, spins[0], changes[0])
+    one = PlainBody(bodies, flights, a, start, end)
     if kinds[1] == PLANE:
         other = bodies.plane_normal[:, b].tolist(), bodies.plane_offset.item(b)
         size = one.radius
     else:
-        other = PlainBody(bodies, flights, b, spins[1], changes[1]),
+        other = PlainBody(bodies, flights, b, start, end),
         size = min(one.radius, other[0].radius)
     return march_one(PLAIN_LINES[kinds](one, *other, end), size, start, end, armed)
 

@@ -30,22 +30,15 @@ from rigid_sim_ros.engine.time_of_impact.pair_lines import LIMIT, NEVER
 class PlainBody:
     """What stays of one body in flight, as plain floats."""
 
-    __slots__ = ('index', 'flights', 'half', 'radius', 'acceleration', 'spin_bound',
-                 'spin_change')
+    __slots__ = ('motion', 'half', 'radius', 'acceleration', 'spin_bound', 'spin_change')
 
-    def __init__(self, bodies, flights, index, spin_bound, spin_change):
-        """Look up one body; bounds as in `pair_lines.Side`."""
-        self.index = index
-        self.flights = flights
+    def __init__(self, bodies, flights, index, start, end):
+        """Look up one body, whose bounds are to hold between two times [s]."""
+        self.motion = flights.trajectory(index)
+        self.spin_bound, self.spin_change = flights.bounds_of_one(index, start, end)
         self.half = bodies.half_extents[:, index].tolist()
         self.radius = bodies.bounding_radius.item(index)
         self.acceleration = flights.acceleration[:, index].tolist()
-        self.spin_bound = spin_bound
-        self.spin_change = spin_change
-
-    def motion(self, time):
-        """Return position, quaternion, velocity and rate, tuples in world axes."""
-        return self.flights.motion(self.index, time)
 
     def vertex_pull(self, across, left):
         """Return how strongly [m/s^2] turning pulls a vertex along n; see `pair_lines.Side`."""

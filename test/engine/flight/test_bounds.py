@@ -125,3 +125,14 @@ def test_each_body_has_its_own_interval():
         single = flights.vertex_acceleration_bound(
             np.array([body]), np.array([1.0 + place]), start[place], end[place])
         assert together[place] == pytest.approx(single[0], rel=1e-14)
+
+
+@pytest.mark.parametrize('moments', [(1.0, 1.0, 1.0), (1.0, 2.0, 2.5)])
+@pytest.mark.parametrize('torque', [(0.0, 0.0, 0.0), (0.3, 0.0, 0.1), (-3.0, -6.0, -9.0)])
+def test_bounds_of_one_are_those_of_many(moments, torque):
+    flights = flight(moments, (1.0, 2.0, 3.0), torque, 0.5)
+    for start, end in ((1.0, 1.0), (1.25, 1.5), (2.0, 30.0)):
+        rate, derivative = flights.bounds_of_one(0, start, end)
+        assert rate == pytest.approx(flights.rate_bound(INDEX, start, end)[0], rel=1e-14)
+        assert derivative == pytest.approx(
+            flights.rate_derivative_bound(INDEX, start, end)[0], rel=1e-14)

@@ -130,13 +130,9 @@ def test_plain_floats_say_what_arrays_say(kinds):
     flying, group, lines = pairs_in_flight(kinds)
     time = np.random.default_rng(2).uniform(0, END / 2, COUNT)
     many = lines(np.arange(COUNT), time)
-    index = np.concatenate((group.a.index, group.b.index))
-    spins = flying.flights.rate_bound(index, 0.0, END)
-    changes = flying.flights.rate_derivative_bound(index, 0.0, END)
     for pair in range(COUNT):
-        one, other = (PlainBody(flying.bodies, flying.flights, int(index[row]),
-                                spins.item(row), changes.item(row))
-                      for row in (pair, pair + COUNT))
+        one, other = (PlainBody(flying.bodies, flying.flights, side.index.item(pair), 0.0, END)
+                      for side in (group.a, group.b))
         others = (other,) if kinds[1] != 'plane' else GROUND
         heights, speeds, pulls, limit, held_speeds, held_pull, apart, scale = (
             PLAIN_LINES[kinds](one, *others, END)(time.item(pair)))
