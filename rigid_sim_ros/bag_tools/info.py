@@ -66,7 +66,7 @@ def _overview(recording):
                f'{recording.time[-1]:.9g} s' + (f', {run_count} runs' if run_count > 1 else ''))
     names = ', '.join(recording.names[:8]) + (', ...' if len(recording.names) > 8 else '')
     yield f'bodies      {len(recording.names)}: {names}'
-    for name in ('method', 'max_step', 'version'):
+    for name in ('method', 'max_step', 'version', 'numpy'):
         if name in recording.options:
             yield f'{name:<12}{recording.options[name]}'
     events = Counter(map(_event, recording.commands))

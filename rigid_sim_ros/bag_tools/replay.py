@@ -105,7 +105,8 @@ def _compare(resimulation, duration):
     count, pair = 0, None
     for pair in _with_progress(resimulation, duration):
         if pair.recorded != pair.again:
-            print(f'different: {first_difference(pair, resimulation.names)}')
+            print('\n'.join([f'different: {first_difference(pair, resimulation.names)}',
+                             *resimulation.other_software]))
             _tell_damage(resimulation)
             return DIFFERENT
         count += 1

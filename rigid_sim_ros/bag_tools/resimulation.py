@@ -32,7 +32,7 @@ from rigid_sim_ros.messages import decode_pose_array, MessageError
 from rigid_sim_ros.nodes.command_readers import READERS
 from rigid_sim_ros.nodes.commands import BODY_AXES, Refused, WORLD_AXES
 from rigid_sim_ros.nodes.session import Session
-from rigid_sim_ros.recording import Bag, RecordingError
+from rigid_sim_ros.recording import Bag, RecordingError, software
 from rigid_sim_ros.recording.history import read_history
 from rigid_sim_ros.recording.journal import (
     ADD, COLLISION, decode_journal, PARAMETERS, PLACE, REMOVE, RESET)
@@ -100,6 +100,13 @@ class Resimulation:
     def damage(self):
         """Return what of the recording could not be read."""
         return self._bag.damage
+
+    @property
+    def other_software(self):
+        """Return what other versions it was recorded with than there are here, one line each."""
+        recorded = self._bag.options()
+        return [f'recorded with {name} {recorded[name]}, simulated with {here}'
+                for name, here in software().items() if recorded.get(name, here) != here]
 
     def pairs(self):
         """

@@ -119,6 +119,10 @@ PARAMETERS = (
         'in the folder recordings', read_only=True),
     Row('record_compression', 'zstd', 'compression of recordings', choices=tuple(COMPRESSIONS),
         read_only=True),
+    Row('record_split_size', 0.0, 'size after which a recording goes on in a new file; 0 is '
+        'never', 'MB', 0.0, 1e6, read_only=True),
+    Row('record_split_duration', 0.0, 'simulated time after which it does; 0 is never', 's', 0.0,
+        1e6, read_only=True),
     Row('record_when_full', WAIT, 'what happens if the disk is too slow: simulated time waits '
         'for it, or messages are dropped', choices=(WAIT, DROP), read_only=True),
 )

@@ -88,7 +88,9 @@ class Recording:
         self._recorder = Recorder(
             self._next_path(), self._rows(),
             compression=self._parameters.record_compression,
-            when_full=self._parameters.record_when_full, scene=self._scene_text,
+            when_full=self._parameters.record_when_full,
+            max_bytes=round(1e6 * self._parameters.record_split_size),
+            max_duration=self._parameters.record_split_duration, scene=self._scene_text,
             options=self._options(), history=self._history.pieces())
         self._remark = '' if self._history.complete else _NO_HISTORY
         self.write(JOURNAL.name, time, self._line_of_parameters())

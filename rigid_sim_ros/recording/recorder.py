@@ -26,9 +26,11 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 import json
 import os
+import platform
 from threading import Condition, Thread
 from time import monotonic
 
+import numpy
 from rigid_sim_ros.recording.bag_metadata import bag_topic
 from rigid_sim_ros.recording.bag_writer import BagWriter
 from rigid_sim_ros.recording.errors import RecordingError
@@ -85,8 +87,14 @@ def package_version():
         return 'unknown'
 
 
+def software():
+    """Return what besides a scene and its options can change the last bit of a result."""
+    return {'version': package_version(), 'numpy': numpy.__version__,
+            'machine': platform.machine()}
+
+
 def _attachments(scene, options):
-    run = {**(options or {}), 'version': package_version()}
+    run = {**(options or {}), **software()}
     return (('scene.yaml', 'application/yaml', scene.encode()),
             ('run.json', 'application/json', json.dumps(run).encode()))
 

@@ -219,9 +219,21 @@ def test_a_command_that_was_not_recorded_shows_as_the_first_difference(tmp_path,
         run.advance(1)
     assert replay.main([str(tmp_path / 'bag')]) == 1
     output = capsys.readouterr().out
+    assert len(output.splitlines()) == 1
     # from x = 3 m with 0.5 m/s for 10 ms, as recorded; at rest, as simulated
     assert output.startswith('different: 0.040000000 s: cube: position [3.005, 0.0, ')
     assert ' recorded, [3.0, 0.0, ' in output
+
+
+def test_another_numpy_is_told_where_results_differ(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(np, '__version__', '0.1')
+    with Recorded(tmp_path / 'bag') as run:
+        run.session.simulation.set_velocity('cube', linear=(0.5, 0, 0))
+        run.advance(1)
+    monkeypatch.undo()
+    assert replay.main([str(tmp_path / 'bag')]) == 1
+    assert capsys.readouterr().out.splitlines()[1] == (
+        f'recorded with numpy 0.1, simulated with {np.__version__}')
 
 
 def test_the_difference_to_another_method_is_that_of_theory(tmp_path, capsys):

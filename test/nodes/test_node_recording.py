@@ -104,6 +104,19 @@ def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
         assert len(messages_of(tmp_path / name, '/rigid_sim/scene')) == 1
 
 
+def test_recording_is_split_after_so_long(tmp_path):
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    with NodeProcess(tmp_path, scene='crowd.yaml', record=True, record_path='bag',
+                     record_split_duration=0.2) as process, Client(process) as client:
+        poses = client.listen('~/poses')
+        client.spin_until(lambda: len(poses) > 50, 'fifty states')
+        assert process.stop(signal.SIGINT)[0] == 0
+    times = [recording.read(tmp_path / 'bag' / f'bag_{number}.mcap').time_ns.tolist()
+             for number in range(2)]
+    assert times == [[10 * MILLISECOND * number for number in range(first, first + 20)]
+                     for first in (0, 20)]
+
+
 def test_a_folder_that_was_moved_away_is_told_when_it_is_stopped(tmp_path):
     (tmp_path / 'crowd.yaml').write_text(CROWD)
     with NodeProcess(tmp_path, scene='crowd.yaml', record=True, record_path='bag') as process, \
