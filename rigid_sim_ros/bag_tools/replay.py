@@ -79,9 +79,10 @@ def _changes(text):
 def _duration(path):
     """Return the simulated time [s] of all runs in a bag, for the progress bar."""
     total, last = 0, 0
-    for message in Bag(path).messages():
-        total += max(0, message.time_ns - last)
-        last = message.time_ns
+    for overview in Bag(path).overviews():
+        # time goes back from one file to the next only
+        total += overview.end_ns - min(last, overview.start_ns)
+        last = overview.end_ns
     return total / 1e9
 
 

@@ -86,7 +86,7 @@ class Playback:
 
     def _survey(self):
         bag = Bag(self._path)
-        there = {message.topic for message in bag.messages()}
+        there = {name for overview in bag.overviews() for name in overview.counts}
         unknown = sorted(self._chosen - there)
         if unknown:
             raise RecordingError(f'{self._path} has no messages of {unknown[0]!r}, but of '

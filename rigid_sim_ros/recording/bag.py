@@ -14,6 +14,7 @@
 
 """The files of a bag, as one stream of messages."""
 
+from collections import Counter
 import json
 import os
 import re
@@ -29,6 +30,17 @@ class BagMessage(NamedTuple):
     topic: str
     time_ns: int
     data: memoryview
+
+
+class FileOverview(NamedTuple):
+    """What is in a file of a bag."""
+
+    counts: Counter
+    """Messages by the name of their topic."""
+
+    start_ns: int
+    end_ns: int
+    """Times of the first and the last message; zero if there is none."""
 
 
 def bag_files(path):
@@ -77,6 +89,38 @@ class Bag:
 
         self.attachments = {}
         """Bytes by name, of the first file that has them; there from the first message on."""
+
+    def overviews(self):
+        """
+        Return a `FileOverview` of each file that can be read; `topics` is complete after that.
+
+        From the ends of the files where these are sound, so that it takes no time; files that
+        have none are gone through.
+        """
+        overviews = []
+        for path in self.files:
+            try:
+                overviews.append(self._overview(path))
+            except RecordingError as error:
+                self.damage.append(str(error))
+        return overviews
+
+    def _overview(self, path):
+        scan = McapScan(path)
+        statistics = scan.statistics()
+        if statistics is None:
+            counts, times = Counter(), []
+            for message in self._messages_of(McapScan(path)):
+                counts[message.topic] += 1
+                times = [*times[:1], message.time_ns]
+            return FileOverview(counts, times[0] if times else 0, times[-1] if times else 0)
+        counts = Counter()
+        for channel, count in statistics.channel_message_counts.items():
+            if count and channel in scan.topics:
+                counts[scan.topics[channel].name] += count
+        for topic in scan.topics.values():
+            self.topics.setdefault(topic.name, topic)
+        return FileOverview(counts, statistics.message_start_time, statistics.message_end_time)
 
     def messages(self):
         """Go through all messages in the order in which they were recorded."""

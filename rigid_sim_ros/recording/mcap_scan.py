@@ -30,7 +30,7 @@ import lz4.frame
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Header, Schema
+from mcap.records import Attachment, Channel, Header, Schema, Statistics
 from rigid_sim_ros.recording.bag_metadata import BagTopic
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.mcap_file import MAGIC
@@ -101,6 +101,23 @@ class McapScan:
                 self._message_count += 1
                 yield message
             self._compare_count(summary)
+
+    def statistics(self):
+        """
+        Return the record at the end of a sound file that counts its messages, or None.
+
+        `topics` has all of the file's topics then. This instead of `messages`: nothing but the
+        end is read, and what is in between may be damaged.
+        """
+        with self._stream:
+            records = self._summary() or ()
+        for code, content in records:
+            if code == Opcode.STATISTICS:
+                try:
+                    return Statistics.read(ReadDataStream(BytesIO(content)))
+                except _UNREADABLE:
+                    return None
+        return None
 
     # -- the file ------------------------------------------------------------------------------
 

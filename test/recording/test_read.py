@@ -20,6 +20,7 @@ import shutil
 import numpy as np
 import pytest
 from rigid_sim_ros import messages, recording
+from rigid_sim_ros.recording import mcap_scan
 from rigid_sim_ros.recording.journal import (
     decode_journal, encode_parameters, encode_reset)
 
@@ -125,6 +126,21 @@ def test_it_works_without_ros(bag, tmp_path):
     output = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
                             timeout=60, env={**os.environ, 'PYTHONPATH': os.getcwd()}, check=True)
     assert output.stdout == '(100, 3, 3)\n[]\n'
+
+
+@pytest.mark.parametrize('cut', [0, 1])
+def test_an_overview_is_what_a_count_would_find(bag, tmp_path, monkeypatch, cut):
+    shutil.copytree(bag, tmp_path / 'bag')
+    file = tmp_path / 'bag' / 'sound_0.mcap'
+    os.truncate(file, file.stat().st_size - cut)
+    counted = {'/rigid_sim/poses': 100, '/rigid_sim/states': 100, '/rigid_sim/collisions': 10,
+               '/rigid_sim/scene': 1}
+    if not cut:
+        # only a file without an end is gone through
+        monkeypatch.setattr(mcap_scan.McapScan, 'messages', None)
+    opened = recording.Bag(tmp_path / 'bag')
+    assert opened.overviews() == [(counted, 0, 990_000_000)]
+    assert set(counted) <= set(opened.topics)
 
 
 def test_options_that_are_no_object_are_told(bag):
