@@ -71,6 +71,12 @@ class Bodies:
     restitution_speed: np.ndarray
     """(n,) [m/s], 0 or more: below it the restitution is in proportion to the speed."""
 
+    rolling_friction: np.ndarray
+    """(n,) [m], 0 or more."""
+
+    pivoting_friction: np.ndarray
+    """(n,) [m], 0 or more."""
+
     @property
     def count(self):
         """Count of all columns: moving bodies, fixed bodies and planes."""
@@ -107,10 +113,9 @@ def bodies_of(scene):
         inverse_mass=np.concatenate((1 / mass, np.zeros(fixed_count))),
         inertia=np.hstack((inertia, np.ones((3, fixed_count)))),
         inverse_inertia=np.hstack((1 / inertia, np.zeros((3, fixed_count)))),
-        restitution=np.array([material.restitution for material in materials], dtype=float),
-        friction=np.array([material.friction for material in materials], dtype=float),
-        restitution_speed=np.array([material.restitution_speed for material in materials],
-                                   dtype=float))
+        **{name: np.array([getattr(material, name) for material in materials], dtype=float)
+           for name in ('restitution', 'friction', 'restitution_speed', 'rolling_friction',
+                        'pivoting_friction')})
 
 
 def _columns(rows):

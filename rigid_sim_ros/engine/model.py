@@ -40,6 +40,12 @@ class Material:
     rebounds in proportion: restitution times speed over this.
     """
 
+    rolling_friction: float = 0.0
+    """Length [m], 0 or more: this times the normal force is the largest torque against rolling."""
+
+    pivoting_friction: float = 0.0
+    """Likewise against turning about the normal. A pair has the larger of its two, of both."""
+
 
 @dataclass(frozen=True)
 class Plane:

@@ -14,7 +14,7 @@
 
 """One entry of `bodies` in a scene file: a body, or by `repeat` a block of copies."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 from rigid_sim_ros.engine import rotation
@@ -86,13 +86,12 @@ def read_material(section, default):
     """Return the Material of a section; what it leaves out is as in `default`."""
     if 'material' not in section:
         return default
-    given = Section(section.values['material'], section.label,
-                    ('restitution', 'friction', 'restitution_speed'),
+    names = tuple(field.name for field in fields(Material))
+    given = Section(section.values['material'], section.label, names,
                     prefix=section.prefix + 'material.')
-    return Material(given.read('restitution', values.fraction, default.restitution),
-                    given.read('friction', values.not_negative, default.friction),
-                    given.read('restitution_speed', values.not_negative,
-                               default.restitution_speed))
+    readers = {'restitution': values.fraction}
+    return Material(**{name: given.read(name, readers.get(name, values.not_negative),
+                                        getattr(default, name)) for name in names})
 
 
 def _read_shape(section):

@@ -15,6 +15,7 @@
 """A scene as the text of a scene file."""
 
 from collections import Counter
+from dataclasses import fields
 from itertools import chain
 import json
 
@@ -57,11 +58,10 @@ def _vector(values):
 
 
 def _material(material):
-    fields = [f'restitution: {_number(material.restitution)}',
-              f'friction: {_number(material.friction)}']
-    if material.restitution_speed:
-        fields.append(f'restitution_speed: {_number(material.restitution_speed)}')
-    return f'{{{", ".join(fields)}}}'
+    given = [field.name for field in fields(material)
+             if field.name in ('restitution', 'friction') or getattr(material, field.name)]
+    return '{' + ', '.join(
+        f'{name}: {_number(getattr(material, name))}' for name in given) + '}'
 
 
 def _name(name):

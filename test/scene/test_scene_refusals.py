@@ -112,6 +112,7 @@ BODIES = {
     FULL + ', material: {restitution: 1.1}': ['material.restitution: 1.1 is not .* 0 to 1'],
     FULL + ', material: {friction: -0.1}': ['material.friction: -0.1 is not .* 0 or more'],
     FULL + ', material: {restitution_speed: .inf}': ['material.restitution_speed: inf is not'],
+    FULL + ', material: {rolling_friction: -1}': ['rolling_friction: -1 is not .* 0 or more'],
     FULL + ', material: {bounce: 1}': ['material.bounce: unknown key'],
     FULL + ', repeat: 3': ['repeat: 3 is not .* mapping'],
     FULL + ', repeat: {count: [1, 1, 1]}': ['repeat.spacing is missing'],

@@ -40,7 +40,8 @@ bodies:
     angular_velocity: [7, 8, 9]
     force: [-1, -2, -3]
     torque: [-4, -5, -6]
-    material: {restitution: 1, restitution_speed: 2}
+    material: {restitution: 1, restitution_speed: 2, rolling_friction: 0.01,
+               pivoting_friction: 0.02}
   - name: ball
     sphere: {radius: 0.5}
     density: 1000
@@ -54,7 +55,8 @@ def test_everything():
         name='brick', shape=Box((0.1, 0.2, 0.3)), mass=2.0, inertia=(0.03, 0.02, 0.04),
         position=(1.0, 2.0, 3.0), orientation=(0.5, -0.5, 0.5, -0.5), velocity=(4.0, 5.0, 6.0),
         angular_velocity=(7.0, 8.0, 9.0), force=(-1.0, -2.0, -3.0), torque=(-4.0, -5.0, -6.0),
-        material=Material(restitution=1.0, friction=1.5, restitution_speed=2.0))
+        material=Material(restitution=1.0, friction=1.5, restitution_speed=2.0,
+                          rolling_friction=0.01, pivoting_friction=0.02))
     mass = 4 / 3 * pi * 0.5 ** 3 * 1000
     ball = Body(
         name='ball', shape=Sphere(0.5), mass=mass, inertia=(0.4 * mass * 0.25,) * 3,

@@ -29,6 +29,7 @@ from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
 from rigid_sim_ros.engine.lasting_contact.near import memory_of, Near
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
+from rigid_sim_ros.engine.spin_friction import resists_spin
 
 
 SLENDER = 3.0
@@ -67,6 +68,8 @@ class Island:
         """(3, n) [m]: how far points are from each axis of a body, if that differs much."""
         if (extents.max(axis=0) > SLENDER * extents.min(axis=0)).any():
             self._arms = np.stack([np.hypot(extents[i - 1], extents[i - 2]) for i in range(3)])
+        self.resists_spin = resists_spin(self.bodies)
+        """Whether there is friction against rolling or pivoting."""
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
         self.impulses = memory_of(older, pairs_a, pairs_b)
@@ -167,7 +170,9 @@ def _own_bodies(bodies, columns, member_count):
         inertia=np.where(mobile, bodies.inertia[:, columns], 1.0),
         inverse_inertia=bodies.inverse_inertia[:, columns] * mobile,
         restitution=bodies.restitution[columns], friction=bodies.friction[columns],
-        restitution_speed=bodies.restitution_speed[columns])
+        restitution_speed=bodies.restitution_speed[columns],
+        rolling_friction=bodies.rolling_friction[columns],
+        pivoting_friction=bodies.pivoting_friction[columns])
 
 
 def _length(vectors):

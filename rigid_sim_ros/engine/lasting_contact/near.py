@@ -14,6 +14,7 @@
 
 """The contacts near the poses of one instant, and what is worked out of them when it is needed."""
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +23,7 @@ from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.graph import connected
 from rigid_sim_ros.engine.solvers import canonical, contact_rows, ContactProblem, solve
+from rigid_sim_ros.engine.spin_friction import Resistance
 
 
 _FEW = 8
@@ -132,7 +134,15 @@ class Near:
             closing |= overlooked
             guess = impulse
         self.island.impulses[half] = self.scene_pairs, self.rows.world(impulse.ravel())
-        return motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
+        struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
+        return self._resisted(struck, impulse) if self.island.resists_spin else struck
+
+    def _resisted(self, motion, impulse):
+        """Return the motion after friction against rolling and pivoting under impulses (3, k)."""
+        resistance = Resistance(self.island.bodies, self.contacts, self.position,
+                                self.orientation, impulse, self._friction)
+        return replace(motion, **dict(zip(
+            ('linear', 'angular'), resistance.applied(motion.linear, motion.angular))))
 
     def _remembered(self, half):
         """Return the last impulses of that name in contact axes, (3, k), or None."""

@@ -204,8 +204,11 @@ def plane_of(island, state, duration):
     """
     Return which pair of an `Island` of one is the only one that matters, or None.
 
-    It is that of the body and a plane, if nothing else can be touched in the duration [s].
+    It is that of the body and a plane, if nothing else can be touched in the duration [s], and
+    if nothing resists the body's spin.
     """
+    if island.resists_spin:
+        return None
     pairs = island.pairs
     count = len(pairs.pairs_a)
     pair = 0

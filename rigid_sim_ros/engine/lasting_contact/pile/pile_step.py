@@ -16,10 +16,12 @@
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
+from rigid_sim_ros.engine.spin_friction import Resistance
 
 ITERATIONS = 60
 """Of the solver in a step, at most; what hardly moves needs a few."""
@@ -165,11 +167,23 @@ class PileStep:
         self._island.world.work.solver_iterations += used
         return forces, contacts.rows.momentum(forces)
 
+    def _resisted(self, linear, angular):
+        """Return velocities (3, n) after friction against rolling and pivoting."""
+        contacts, bodies = self.contacts, self._island.bodies
+        found = contacts.contacts
+        return Resistance(
+            bodies, found, self._start.position, self._start.orientation,
+            contacts.forces(self.forces),
+            mixed_friction(bodies.friction[found.body_a], bodies.friction[found.body_b]),
+        ).applied(linear, angular)
+
     def _drifted(self, scaled):
         """Return the motion at the end of a step at the velocities that are given scaled."""
         start, duration, count = self._start, self._duration, self._island.member_count
         linear, angular = self._kicked.linear.copy(), self._kicked.angular.copy()
         linear[:, :count], angular[:, :count] = self.contacts.velocities(scaled)
+        if self._island.resists_spin:
+            linear, angular = self._resisted(linear, angular)
         struck = Motion(start.position, start.orientation, linear, angular)
         turn = rotation.from_rotation_vector(duration * angular)
         orientation = rotation.normalize(rotation.multiply(turn, start.orientation))

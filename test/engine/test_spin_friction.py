@@ -1,0 +1,134 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Friction against rolling and pivoting: closed forms of balls that come to rest, or do not."""
+
+import numpy as np
+import pytest
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
+from rigid_sim_ros.engine.shapes import Box, Sphere
+
+GRAVITY, RADIUS, MASS = 9.81, 0.1, 2.0
+STEP = 1 / 240
+
+
+def ball(name='ball', x=0.0, z=RADIUS, **values):
+    """Return a ball of 2 kg on the ground."""
+    shape = Sphere(RADIUS)
+    return Body(name, shape, MASS, shape.inertia(MASS), position=(x, 0.0, z), **values)
+
+
+def simulated(*bodies, slope=0.0, **material):
+    """Return a simulation on a plane that falls towards x, of one material."""
+    surface = Material(restitution=0.0, friction=0.6, **material)
+    bodies = [Body(**{**vars(body), 'material': surface}) for body in bodies]
+    gravity = (GRAVITY * np.sin(slope), 0.0, -GRAVITY * np.cos(slope))
+    return Simulation(Scene(tuple(bodies), (Plane('ground', material=surface),), gravity=gravity),
+                      max_step=STEP)
+
+
+def run(simulation, end):
+    """Advance to a time [s] in steps, or until all rest."""
+    while simulation.time < end - 1e-9 and not simulation.asleep.all():
+        simulation.advance(STEP)
+    return simulation
+
+
+def rolling(speed):
+    """Return the start of a ball that rolls."""
+    return {'velocity': (speed, 0.0, 0.0), 'angular_velocity': (0.0, speed / RADIUS, 0.0)}
+
+
+@pytest.mark.parametrize('count', [1, 3])
+def test_rolling_balls_come_to_rest(count):
+    """The torque about the contact, width times weight, takes from 7/5 m r^2 of inertia."""
+    width, speed, early = 0.01, 0.2, 0.1
+    slowing = width * GRAVITY * 5 / (7 * RADIUS)
+    balls = [ball(f'ball{row}', x=0.5 * row, **rolling(speed)) for row in range(count)]
+    simulation = run(simulated(*balls, rolling_friction=width), early)
+    np.testing.assert_allclose(simulation.linear_velocity[:, 0], speed - early * slowing,
+                               rtol=1e-9)
+    np.testing.assert_allclose(simulation.angular_velocity[:, 1],
+                               (speed - early * slowing) / RADIUS, rtol=1e-9)
+    run(simulation, 1.0)
+    assert simulation.asleep.all()
+    assert simulation.time == pytest.approx(speed / slowing, abs=2 * STEP)
+    way = simulation.position[:, 0] - 0.5 * np.arange(count)
+    np.testing.assert_allclose(way, speed ** 2 / (2 * slowing), rtol=1e-4)
+
+
+def test_many_balls_on_one_plate_roll_as_one_does():
+    """A pile, of first order: that of nine balls on a plate too heavy for them to move."""
+    width, speed, early = 0.01, 0.2, 0.1
+    plate = Box((5.0, 1.0, 0.1))
+    under = Body('plate', plate, 1e4, plate.inertia(1e4), position=(2.0, 0.0, 0.05))
+    balls = [ball(f'ball{row}', x=0.5 * row, z=0.1 + RADIUS, **rolling(speed))
+             for row in range(9)]
+    slowing = width * GRAVITY * 5 / (7 * RADIUS)
+    simulation = run(simulated(under, *balls, rolling_friction=width), early)
+    np.testing.assert_allclose(simulation.linear_velocity[1:, 0], speed - early * slowing,
+                               rtol=2e-3)
+    run(simulation, 2.0)
+    assert simulation.asleep.all()
+    np.testing.assert_allclose(simulation.position[1:, 0] - 0.5 * np.arange(9),
+                               speed ** 2 / (2 * slowing), rtol=0.03)
+
+
+def test_a_ball_rests_on_a_slope_that_its_width_holds():
+    simulation = run(simulated(ball(), slope=0.019, rolling_friction=0.002), 0.2)
+    assert simulation.asleep.all()
+    assert abs(simulation.position[0, 0]) < 1e-9
+
+
+def test_on_a_steeper_slope_it_rolls():
+    slope, width = 0.05, 0.002
+    end = 0.2
+    simulation = run(simulated(ball(), slope=slope, rolling_friction=width), end)
+    pull = 5 / 7 * GRAVITY * (np.sin(slope) - width / RADIUS * np.cos(slope))
+    assert simulation.linear_velocity[0, 0] == pytest.approx(pull * end, rel=1e-9)
+    assert simulation.position[0, 0] == pytest.approx(pull * end ** 2 / 2, rel=1e-9)
+
+
+def test_a_spinning_ball_comes_to_rest_where_it_is():
+    """Width times weight on 2/5 m r^2; nothing else moves."""
+    width, spin, early = 0.01, 5.0, 0.1
+    slowing = width * GRAVITY / (0.4 * RADIUS ** 2)
+    simulation = run(simulated(ball(angular_velocity=(0.0, 0.0, spin)),
+                               pivoting_friction=width), early)
+    assert simulation.angular_velocity[0, 2] == pytest.approx(spin - early * slowing, rel=1e-9)
+    run(simulation, 1.0)
+    assert simulation.asleep.all()
+    assert simulation.time == pytest.approx(spin / slowing, abs=2 * STEP)
+    np.testing.assert_allclose(simulation.position[0], (0.0, 0.0, RADIUS), atol=1e-12)
+
+
+def test_torques_act_on_both():
+    """A ball that spins on a plate in the air: together they keep their angular momentum."""
+    plate = Box((1.0, 1.0, 0.1))
+    under = Body('plate', plate, 5.0, plate.inertia(5.0), position=(0.0, 0.0, 1.0))
+    simulation = simulated(
+        ball(z=1.05 + RADIUS, angular_velocity=(0.0, 0.0, 20.0), force=(0.0, 0.0, -30.0)), under,
+        pivoting_friction=0.01)
+    simulation.apply_wrench('plate', force=(0.0, 0.0, 7 * GRAVITY + 30.0))
+    momentum = simulation.angular_momentum()[2]
+    simulation.advance(0.2)
+    spins = simulation.angular_velocity[:, 2]
+    assert 0.0 < spins[1] < spins[0] < 20.0
+    assert simulation.angular_momentum()[2] == pytest.approx(momentum, rel=1e-9)
+
+
+def test_without_it_balls_roll_on():
+    simulation = run(simulated(ball(**rolling(0.5))), 5.0)
+    assert simulation.position[0, 0] == pytest.approx(2.5, rel=1e-9)
