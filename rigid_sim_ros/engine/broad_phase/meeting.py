@@ -79,9 +79,11 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
 def first_falls(height, speed, acceleration):
     """Return when, (p,) [s], height + speed t + acceleration t^2 / 2 first is not positive."""
     square = speed * speed - 2 * acceleration * height
-    run = np.sqrt(np.maximum(square, 0.0)) - speed
-    reaches = (square >= 0) & (run > 0)
-    time = np.where(reaches, 2 * height / np.where(reaches, run, 1.0), np.inf)
+    root = np.sqrt(np.maximum(square, 0.0))
+    # two forms of the same root: what rises from next to nothing has one in which nothing cancels
+    above, below = np.where(speed > 0, (speed + root, -acceleration), (2 * height, root - speed))
+    reaches = (square >= 0) & (below > 0)
+    time = np.where(reaches, above / np.where(reaches, below, 1.0), np.inf)
     return np.where(height <= 0, 0.0, time)
 
 
@@ -144,6 +146,8 @@ def first_fall(height, speed, acceleration):
     square = speed * speed - 2 * acceleration * height
     if square < 0:
         return inf
+    if speed > 0:
+        return (speed + sqrt(square)) / -acceleration if acceleration < 0 else inf
     run = sqrt(square) - speed
     return 2 * height / run if run > 0 else inf
 

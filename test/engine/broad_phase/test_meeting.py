@@ -20,6 +20,7 @@ import pytest
 
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.broad_phase import meeting_times
+from rigid_sim_ros.engine.broad_phase.meeting import first_fall, first_falls
 from rigid_sim_ros.engine.model import Body, Plane, Scene
 from rigid_sim_ros.engine.shapes import Sphere
 
@@ -116,3 +117,13 @@ def test_a_graze_by_less_than_rounding_counts_as_meeting():
     assert meeting_times(bodies, *args) == pytest.approx([1e3], rel=1e-5)
     position[1, 1] = 0.75 + 1e-4
     assert meeting_times(bodies, *args) == [np.inf]
+
+
+@pytest.mark.parametrize('speed, acceleration, expected', [
+    # 2 u / g from next to nothing: a ball that has just rebounded is not to fall through the floor
+    (4.4726, -100.0, 2 * 4.4726 / 100), (4.4726, 0.0, np.inf), (4.4726, 1.0, np.inf),
+    (0.0, -100.0, np.sqrt(2 * 6e-17 / 100)), (-2.0, -100.0, 3e-17), (-2.0, 100.0, 3e-17)])
+def test_falls_from_next_to_nothing_do_not_cancel(speed, acceleration, expected):
+    assert first_fall(6e-17, speed, acceleration) == pytest.approx(expected, rel=1e-12)
+    found = first_falls(*(np.array([value]) for value in (6e-17, speed, acceleration)))
+    assert found[0] == pytest.approx(expected, rel=1e-12)
