@@ -16,8 +16,10 @@
 Rotation under constant torque: a chain of power series, a stride of time each.
 
 No closed form is known. The chain is extended as far as it has been asked for; each stride starts
-from the state at the end of the one before, which is kept, so that earlier times can be asked for
-again. How a stride is made is in `strides`, one law for equal moments and one for unequal ones.
+from the state at the end of the one before. States that time has passed are forgotten but for the
+first, so a chain takes no more memory the longer it is; who asks for an earlier time has it made
+again from the start. How a stride is made is in `strides`, one law for equal moments and one for
+unequal ones.
 """
 
 from bisect import bisect_right
@@ -30,6 +32,9 @@ from rigid_sim_ros.engine.flight.packed_columns import PackedColumns
 
 KEPT_STRIDES = 16
 """Series kept of one body: searches go back and forth within few strides."""
+
+KEPT_STATES = 64
+"""States that time has passed and that are kept of one body."""
 
 FEW = 8
 """Up to so many bodies, strides are made one by one in plain floats: faster, measured."""
@@ -45,18 +50,35 @@ LEADING = 3
 
 
 class Chain:
-    """The strides of one body: their start times and states, and the series of a few."""
+    """
+    The strides of one body: start times and states of the latest, and the series of a few.
+
+    The number of a stride is its place among the latest, so it holds until `forget` is called.
+    """
 
     def __init__(self, law, constants, time, state):
         """Begin with a state at a time; `constants` and `state` are the law's."""
         self.law = law
         self.constants = constants
+        self._first = time, state
+        self._restart()
+
+    def _restart(self):
+        time, state = self._first
         self.times = [time]
         self.states = [state]
         self._strides = {}
 
+    def forget(self, time):
+        """Forget the states before `time`, if there are many: it is asked for, and later ones."""
+        number = self.locate(time)
+        if number > KEPT_STATES:
+            del self.times[:number], self.states[:number]
+
     def locate(self, time):
         """Return the number of the stride that holds `time`, or of the last one begun."""
+        if time < self.times[0] and self.times[0] != self._first[0]:
+            self._restart()
         return max(bisect_right(self.times, time) - 1, 0)
 
     def append(self, time, state):
@@ -66,7 +88,7 @@ class Chain:
 
     def stride(self, number):
         """Return (unit [s], series) of a stride that is begun, made again if not kept."""
-        stride = self._strides.get(number)
+        stride = self._strides.get(self.times[number])
         if stride is None:
             end, unit, series, state = self.law.stride(
                 FLOATS, self.constants, self.times[number], self.states[number])
@@ -74,15 +96,17 @@ class Chain:
                 self.append(end, state)
             if len(self._strides) >= KEPT_STRIDES:
                 self._strides.clear()
-            stride = self._strides[number] = unit, series
+            stride = self._strides[self.times[number]] = unit, series
         return stride
 
     def reach(self, time):
         """Return the number of the stride that holds `time`, extending the chain to it."""
+        number = self.locate(time)
         while self.times[-1] <= time:
-            self.stride(len(self.times) - 1)
+            number = len(self.times) - 1
+            self.stride(number)
             self.refuse_endless(time)
-        return self.locate(time)
+        return number
 
     def refuse_endless(self, time):
         """Raise OverflowError if the chain would need too many strides more to reach `time`."""
@@ -171,6 +195,7 @@ class DrivenRotations:
         if not len(times):
             return np.empty((4, 0))
         chain = self._chains[body]
+        chain.reach(float(times.min()))
         chain.reach(float(times.max()))
         numbers = np.searchsorted(chain.times, times, side='right') - 1
         first, last = int(numbers.min()), int(numbers.max())
@@ -226,6 +251,7 @@ class DrivenRotations:
         if len(bodies) <= FEW:
             for body in bodies.tolist():
                 chain = self._chains[body]
+                chain.forget(time)
                 number = chain.reach(time)
                 unit, series = chain.stride(number)
                 self._table.put_one(body, [
@@ -238,6 +264,8 @@ class DrivenRotations:
     def _extend(self, bodies, time):
         """Make a stride for each of many bodies; return which of them, (k,), need more."""
         chains = [self._chains[body] for body in bodies.tolist()]
+        for chain in chains:
+            chain.forget(time)
         numbers = [chain.locate(time) for chain in chains]
         begin = np.array([chain.times[number] for chain, number in zip(chains, numbers)])
         state = _rows(chain.states[number] for chain, number in zip(chains, numbers))

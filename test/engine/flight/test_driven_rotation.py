@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.flight import Flights
+from rigid_sim_ros.engine.flight.driven_rotation import KEPT_STATES
 
 from rotating import (  # noqa: I100
     angle_error, begin_one, case, cases, flights_of, momentum_and_energy, random_quaternions)
@@ -103,6 +104,24 @@ def test_scales_of_time_and_body_do_not_matter(moments):
                   torque=torque * speed ** 2 * size)
         results.append(flights.motion(0, 5.0 / speed)[1])
     assert abs(np.array(results) - results[0]).max() < 2e-13
+
+
+@pytest.mark.parametrize('copies', [1, 9])
+def test_a_long_flight_takes_no_more_memory_and_its_beginning_is_not_lost(copies):
+    one = case('driven box, weak')
+    flights, fresh = flights_of([one], copies), flights_of([one], copies)
+    most = 0
+    for time in np.arange(0.0, 15.0, 0.2).tolist():
+        flights.poses(time)
+        most = max([most, *(len(chain.states) for rotations in flights._present
+                            for chain in rotations._chains.values())])
+    # of about 110, and a few ahead
+    assert KEPT_STATES / 2 < most < KEPT_STATES + 10
+    for time in (1.3, 14.9, 8.0):
+        np.testing.assert_array_equal(flights.poses(time)[1], fresh.poses(time)[1])
+    times = np.array([0.0, 14.9])
+    np.testing.assert_array_equal(flights.poses_at_times(0, times)[1],
+                                  fresh.poses_at_times(0, times)[1])
 
 
 def test_a_tiny_torque_joins_the_free_rotation():
