@@ -116,7 +116,7 @@ class Resimulation:
         """
         ahead = deque()
         for message in self._messages:
-            kind = message.topic.rpartition('/')[2]
+            kind = self._bag.kind(message.topic)
             if kind == POSES and self._session is None:
                 self._begin(message)
                 for earlier_kind, earlier in ahead:

@@ -21,9 +21,7 @@ time was reset: a message that is stamped earlier than the one before follows at
 
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.recording import Bag, RecordingError
-
-NOT_PLAYED = ('cmd_force', 'cmd_torque', 'cmd_wrench', 'cmd_vel', 'cmd_states', 'journal')
-"""Last parts of the names of topics that are not played unless they are asked for."""
+from rigid_sim_ros.recording.collecting import COMMAND_KINDS
 
 
 class Playback:
@@ -87,16 +85,16 @@ class Playback:
     def _survey(self):
         bag = Bag(self._path)
         there = {name for overview in bag.overviews() for name in overview.counts}
+        next(bag.messages(), None)  # what a topic is stands at the beginning
         unknown = sorted(self._chosen - there)
         if unknown:
             raise RecordingError(f'{self._path} has no messages of {unknown[0]!r}, but of '
                                  f'{", ".join(sorted(there))}')
-        return {name: bag.topics[name] for name in sorted(there) if self._is_wanted(name)}
+        return {name: bag.topics[name] for name in sorted(there)
+                if self._is_wanted(name, bag.kind(name))}
 
-    def _is_wanted(self, name):
-        if self._chosen:
-            return name in self._chosen
-        return name.rpartition('/')[2] not in NOT_PLAYED
+    def _is_wanted(self, name, kind):
+        return name in self._chosen if self._chosen else kind not in COMMAND_KINDS
 
     def _from_start(self):
         """Go through the messages to play: bag time [ns] since its beginning, and message."""

@@ -184,5 +184,6 @@ class Recording:
         simulation, parameters = self._source.simulation, self._parameters
         return {
             'names': simulation.names, 'all_names': simulation.all_names,
+            'topics': self._names,
             'method': simulation.method, 'max_step': simulation.max_step,
             'publish_rate': parameters.publish_rate, 'world_frame': parameters.world_frame}

@@ -62,6 +62,10 @@ def bag_files(path):
     return [os.path.join(path, name) for name in files]
 
 
+def _last_part(name):
+    return name.rpartition('/')[2]
+
+
 def _by_number(name):
     number = re.search(r'_(\d+)\.mcap$', name)
     return (int(number.group(1)[-18:]) if number else -1, name)
@@ -89,6 +93,21 @@ class Bag:
 
         self.attachments = {}
         """Bytes by name, of the first file that has them; there from the first message on."""
+
+        self._kinds = None
+
+    def kind(self, name):
+        """
+        Return what the node's own name for a topic ends with: poses for /rigid_sim/poses.
+
+        Also of a topic that was remapped, whatever it is called. From the first message on.
+        """
+        if self._kinds is None:
+            names = self.options().get('topics')
+            names = names if isinstance(names, dict) else {}
+            self._kinds = {resolved: _last_part(own) for own, resolved in names.items()
+                           if isinstance(resolved, str)}
+        return self._kinds.get(name) or _last_part(name)
 
     def overviews(self):
         """

@@ -27,7 +27,8 @@ from rigid_sim_ros.messages import (
     MultiDOFJointStateDecoder)
 from rigid_sim_ros.recording.journal import BODIES, decode_journal
 
-COMMAND_TOPICS = ('cmd_force', 'cmd_torque', 'cmd_wrench', 'cmd_vel', 'cmd_states', 'journal')
+COMMAND_KINDS = ('cmd_force', 'cmd_torque', 'cmd_wrench', 'cmd_vel', 'cmd_states', 'journal')
+"""Kinds of topics of what was done to a simulation, not of what it published."""
 
 _POSE, _RATES = slice(0, 7), slice(7, 19)
 """Columns of a row of a state."""
@@ -81,19 +82,20 @@ class Collected:
         self._run = self._last_ns = 0
         self._decoder = MultiDOFJointStateDecoder()
 
-    def take(self, topic, message):
+    def take(self, kind, type_name, message):
         """
-        Take one message in; topics that are not known are nothing to this reader.
+        Take one message in, given the kind of its topic (see `Bag.kind`) and its type.
+
+        What is not known is nothing to this reader.
 
         Raises `MessageError` for a message that cannot be read; it is left out.
         """
         if message.time_ns < self._last_ns:
             self._run += 1
         self._last_ns = message.time_ns
-        last_part = topic.name.rpartition('/')[2]
-        if last_part in COMMAND_TOPICS:
+        if kind in COMMAND_KINDS:
             self.commands.append(message._replace(data=bytes(message.data)))
-        take = _TAKERS.get((last_part, topic.type_name))
+        take = _TAKERS.get((kind, type_name))
         if take is not None:
             take(self, message)
 

@@ -100,7 +100,8 @@ def read(path):
     collected = Collected()
     for message in bag.messages():
         try:
-            collected.take(bag.topics[message.topic], message)
+            collected.take(
+                bag.kind(message.topic), bag.topics[message.topic].type_name, message)
         except MessageError as error:
             bag.damage.append(f'message of {message.topic} at {message.time_ns / 1e9:.9f} s left '
                               f'out: {error}')

@@ -27,7 +27,9 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 from node_harness import Client, CROWD, nanoseconds, NodeProcess  # noqa: E402, I100
 from rclpy.serialization import deserialize_message  # noqa: E402
 from rigid_sim_ros import recording  # noqa: E402
+from rigid_sim_ros.bag_tools import replay  # noqa: E402
 from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
+from rigid_sim_ros.nodes.playback import Playback  # noqa: E402
 
 MILLISECOND = 1_000_000
 
@@ -102,6 +104,30 @@ def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
         assert_array_equal(steps, 10 * MILLISECOND)
         # each begins with the scene, for whoever opens it alone
         assert len(messages_of(tmp_path / name, '/rigid_sim/scene')) == 1
+
+
+def test_topics_of_other_names_are_read_replayed_and_played_as_what_they_are(tmp_path, capsys):
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    names = {'poses': 'where', 'states': 'all/poses', 'cmd_vel': 'poses', 'journal': 'diary'}
+    remapping = [word for own, other in names.items() for word in ('-r', f'~/{own}:=/{other}')]
+    with NodeProcess(tmp_path, ['--ros-args', *remapping, '--'], scene='crowd.yaml', record=True,
+                     record_path='bag') as process, Client(process) as client:
+        publisher = client.node.create_publisher(
+            interface('geometry_msgs/msg/TwistStamped'), '/poses', 10)
+        client.spin_until(publisher.get_subscription_count, 'a subscriber of /poses')
+        message = interface('geometry_msgs/msg/TwistStamped')()
+        message.header.frame_id, message.twist.linear.z = 'cube_3', 2.0
+        client.spin(0.3)
+        publisher.publish(message)
+        client.spin(0.3)
+        assert process.stop(signal.SIGINT)[0] == 0
+    recorded = recording.read(tmp_path / 'bag')
+    assert recorded.linear_velocity[-1, 2, 2] > 1.0 > recorded.linear_velocity[0, 2, 2]
+    assert [command.topic for command in recorded.commands] == ['/diary', '/poses']
+    assert replay.main([str(tmp_path / 'bag')]) == 0
+    assert capsys.readouterr().out.startswith('identical: ')
+    played = set(Playback(str(tmp_path / 'bag')).topics)
+    assert {'/where', '/all/poses'} <= played and not played & {'/poses', '/diary'}
 
 
 def test_recording_is_split_after_so_long(tmp_path):
