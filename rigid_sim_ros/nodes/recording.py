@@ -23,7 +23,7 @@ from datetime import datetime
 from pathlib import Path
 
 from rigid_sim_ros.messages import DiagnosticStatus, ERROR, OK, WARN
-from rigid_sim_ros.recording import Recorder, RECORDING, RecordingError
+from rigid_sim_ros.recording import Recorder, RECORDING, RecordingError, WAIT
 from rigid_sim_ros.recording.history import History
 from rigid_sim_ros.recording.journal import encode_bodies, encode_parameters
 from rigid_sim_ros.topics import COMMANDS, EVERY_SECOND, JOURNAL, PUBLISHED
@@ -91,7 +91,7 @@ class Recording:
             when_full=self._parameters.record_when_full,
             max_bytes=round(1e6 * self._parameters.record_split_size),
             max_duration=self._parameters.record_split_duration, scene=self._scene_text,
-            options=self._options(), history=self._history.pieces())
+            options=self._options(), history=self._history.pieces(), on_full=self._warn_full)
         self._remark = '' if self._history.complete else _NO_HISTORY
         self.write(JOURNAL.name, time, self._line_of_parameters())
 
@@ -172,6 +172,12 @@ class Recording:
             given = f'{FOLDER}/{scene}_{datetime.now():%Y_%m_%d-%H_%M_%S}'
         self._count += 1
         return given if self._count == 1 else f'{given}_{self._count}'
+
+    def _warn_full(self):
+        consequence = ('simulated time waits for it' if self._parameters.record_when_full == WAIT
+                       else 'messages are lost')
+        self._node.get_logger().warning(
+            f'the disk is too slow for recording to {self._recorder.path}: {consequence}')
 
     def _line_of_parameters(self):
         return encode_parameters(self._parameters.command_axes, self._parameters.command_timeout)

@@ -18,8 +18,9 @@ from rigid_sim_ros.recording.bag import Bag, BagMessage
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.read import read, Recording
 from rigid_sim_ros.recording.recorder import (
-    CLOSED, DROP, FAILED, Recorder, RecorderState, RECORDING, software, WAIT)
+    CLOSED, DROP, FAILED, Recorder, RecorderState, RECORDING, WAIT)
 from rigid_sim_ros.recording.recover import recover
+from rigid_sim_ros.recording.software import software
 
 __all__ = ['Bag', 'BagMessage', 'CLOSED', 'DROP', 'FAILED', 'RECORDING', 'Recorder',
            'RecorderState', 'Recording', 'RecordingError', 'WAIT', 'read', 'recover', 'software']

@@ -23,19 +23,17 @@ readable; whoever writes goes on.
 
 from collections import deque
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 import json
 import os
-import platform
 from threading import Condition, Thread
 from time import monotonic
 
-import numpy
 from rigid_sim_ros.recording.bag_metadata import bag_topic
 from rigid_sim_ros.recording.bag_writer import BagWriter
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.history import ATTACHMENT, MEDIA_TYPE
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
+from rigid_sim_ros.recording.software import package_version, software
 
 RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
 """The phases of a recorder."""
@@ -79,20 +77,6 @@ class RecorderState:
     """Messages lost because the queue was full or the recording had failed."""
 
 
-def package_version():
-    """Return the version of this package, for the header of a file."""
-    try:
-        return version('rigid_sim_ros')
-    except PackageNotFoundError:
-        return 'unknown'
-
-
-def software():
-    """Return what besides a scene and its options can change the last bit of a result."""
-    return {'version': package_version(), 'numpy': numpy.__version__,
-            'machine': platform.machine()}
-
-
 def _attachments(scene, options):
     run = {**(options or {}), **software()}
     return (('scene.yaml', 'application/yaml', scene.encode()),
@@ -126,6 +110,8 @@ class Recorder:
         What else is needed to run it again, attached as `run.json`.
     history : sequence of bytes
         What happened before, as `History.pieces` gives it; attached as `history`.
+    on_full : callable
+        Called without arguments by `write` when it begins to wait or to count lost messages.
 
     Raises `RecordingError` if the folder is there already or cannot be made.
 
@@ -133,7 +119,7 @@ class Recorder:
 
     def __init__(self, uri, topics, *, compression='zstd', chunk_seconds=1.0, max_bytes=0,
                  max_duration=0.0, queue_bytes=2**28, when_full=DROP, scene='', options=None,
-                 history=()):
+                 history=(), on_full=lambda: None):
         if compression not in COMPRESSIONS:
             raise RecordingError(f'compression is {compression!r}; allowed: '
                                  f'{", ".join(COMPRESSIONS)}')
@@ -142,6 +128,7 @@ class Recorder:
         self._channels = {topic.name: number for number, topic in enumerate(topics, 1)}
         self._chunk_seconds = chunk_seconds
         self._queue_bytes, self._when_full = queue_bytes, when_full
+        self._on_full, self._full = on_full, False
         self._condition = Condition()
         self._queue = deque()
         self._queued_bytes = self._dropped_count = 0
@@ -181,7 +168,12 @@ class Recorder:
         channel = self._channels[topic_name]
         size = len(data) + _MESSAGE_OVERHEAD
         with self._condition:
+            if not self._queue:
+                self._full = False
             while self._phase == RECORDING and self._queued_bytes + size > self._queue_bytes:
+                if not self._full:
+                    self._full = True
+                    self._on_full()
                 if self._when_full == DROP or not self._queue:
                     break
                 self._condition.wait()

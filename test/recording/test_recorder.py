@@ -177,11 +177,15 @@ def test_a_disk_that_stalls_delays_nobody(tmp_path, run, monkeypatch):
 
 
 def test_a_full_queue_drops_and_counts(tmp_path, run, monkeypatch):
-    recorder = run.recorder(tmp_path / 'bag', chunk_seconds=0.1, queue_bytes=5000)
+    told = []
+    recorder = run.recorder(tmp_path / 'bag', chunk_seconds=0.1, queue_bytes=5000,
+                            on_full=lambda: told.append(1))
     disk = Disk(monkeypatch, stall=0.5)
     run.write(recorder, 0, 1)
     assert disk.stalled.wait(5)
+    assert not told
     run.write(recorder, 1, 100)
+    assert told == [1], 'once, not for each'
     disk.stall = 0.0
     state = recorder.close()
     assert state.phase == 'closed'
@@ -191,9 +195,12 @@ def test_a_full_queue_drops_and_counts(tmp_path, run, monkeypatch):
 
 
 def test_a_full_queue_can_make_the_writer_wait_instead(tmp_path, run, monkeypatch):
-    recorder = run.recorder(tmp_path / 'bag', queue_bytes=5000, when_full=recording.WAIT)
+    told = []
+    recorder = run.recorder(tmp_path / 'bag', queue_bytes=5000, when_full=recording.WAIT,
+                            on_full=lambda: told.append(1))
     Disk(monkeypatch, stall=0.01)
     run.write(recorder, 0, 40)
+    assert told
     state = recorder.close()
     assert (state.message_count, state.dropped_count) == (84, 0)
 
