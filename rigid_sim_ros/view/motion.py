@@ -119,7 +119,11 @@ class SimulatedMotion(Motion):
 
 
 class RecordedMotion(Motion):
-    """The longest run of a recording; a run ends where simulated time was reset."""
+    """
+    The longest run of a recording; a run ends where simulated time was reset.
+
+    States with other bodies than those the recording began with are left out.
+    """
 
     def __init__(self, path):
         recorded = recording.read(path)
@@ -128,14 +132,16 @@ class RecordedMotion(Motion):
         if not recorded.scene:
             raise ViewError(f'{path}: holds no scene, which says what shapes the bodies have')
         super().__init__(load_scene(recorded.scene + '\n'))
-        recorded_count = recorded.position.shape[1]
-        if recorded_count != self.moving_count:
-            raise ViewError(f'{path}: has poses of {recorded_count} bodies, but its scene has '
+        there = ~np.isnan(recorded.position[:, :, 0])
+        # if bodies came and went, the states with those of the scene
+        whole = there[:, :self.moving_count].all(axis=1) & (there.sum(axis=1) == self.moving_count)
+        if not whole.any():
+            raise ViewError(f'{path}: has poses of {there[0].sum()} bodies, but its scene has '
                             f'{self.moving_count} that move')
-        chosen = recorded.run == np.argmax(np.bincount(recorded.run))
+        chosen = whole & (recorded.run == np.argmax(np.bincount(recorded.run[whole])))
         self._time = recorded.time[chosen]
-        self._position = recorded.position[chosen]
-        self._orientation = recorded.orientation[chosen]
+        self._position = recorded.position[chosen, :self.moving_count]
+        self._orientation = recorded.orientation[chosen, :self.moving_count]
         self._collisions = recorded.collisions
         self.end = float(self._time[-1])
 

@@ -21,6 +21,7 @@ import pytest
 from rigid_sim_ros import messages, topics
 from rigid_sim_ros.engine import events
 from rigid_sim_ros.recording import Recorder, RecordingError
+from rigid_sim_ros.recording.journal import encode_bodies
 from rigid_sim_ros.scene import load_scene, SceneError
 from rigid_sim_ros.view.errors import ViewError
 from rigid_sim_ros.view.motion import CONTACT_SHOWN, open_motion, SimulatedMotion
@@ -109,6 +110,22 @@ def test_a_recording_of_one_state(bag):
 def test_refusals(bag, tmp_path):
     with pytest.raises(ViewError, match='holds no scene'):
         open_motion(bag(3, scene=''))
+
+
+def test_states_with_bodies_that_came_later_are_left_out(tmp_path):
+    rows = [*ROWS, replace(topics.JOURNAL, name='/rigid_sim/journal')]
+    names = [body.name for body in load_scene(SCENE).bodies if not body.fixed]
+    with Recorder(tmp_path / 'bag', rows, scene=SCENE, options={'names': names}) as recorder:
+        for step, count in enumerate((2, 2, 3, 3, 2)):
+            bodies = [*names, 'new'][:count]
+            recorder.write('/rigid_sim/journal', step, encode_bodies(count, [*bodies, 'ground']))
+            encoder = messages.PoseArrayEncoder('world', count)
+            recorder.write('/rigid_sim/poses', step, encoder.encode(
+                step, np.full((count, 3), float(step)), np.ones((count, 4))))
+    motion = open_motion(str(tmp_path / 'bag'))
+    states = motion.states([0, 1e-9, 4e-9])
+    assert states.position[:, 1, 0].tolist() == [0, 1, 4]
+    assert motion.states([2e-9]).position[0, 1, 0] == 1
 
 
 def test_a_scene_of_other_bodies_is_refused(bag):
