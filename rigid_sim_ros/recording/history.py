@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-What happened since the scene was loaded or last reset, kept in memory by whoever may record later.
+What happened since the scene was loaded or last reset, kept by whoever may record later.
 
 A simulation is more than its poses: flights, islands, sleep and the forces of the last step are
 in it too, and none of them can be read off a state. A recording that begins in the middle of a
@@ -29,16 +29,19 @@ then blocks, each the size of a zstd frame (uint32) and the frame, and in the fr
 
 with times dt [ns] since the record before, the first since begin_ns; all little-endian.
 
-Noting a state or a command takes a microsecond. Compressed, a state is 0.01 to 0.25 bytes, and a
-command what is new in it: forces on one body at 1 kHz, none like the one before, are 85 MB an
-hour, wrenches 170, constant ones less than one. A reset forgets all that. What exceeds
-`LARGEST_HISTORY` is given up: until the next reset recordings begin without a history, and
-whoever begins one is told that it cannot be simulated again.
+Noting a state or a command takes a microsecond. It is kept in a temporary file without a name,
+which is gone with the process, so that memory does not grow with the length of a run. Compressed,
+a state is 0.01 to 0.25 bytes, and a command what is new in it: forces on one body at 1 kHz, none
+like the one before, are 85 MB an hour, wrenches 170, constant ones less than one. A reset forgets
+all that. What exceeds `LARGEST_HISTORY`, or has no place on the disk, is given up: until the next
+reset recordings begin without a history, and whoever begins one is told that it cannot be
+simulated again.
 """
 
 import json
 import operator
 import struct
+import tempfile
 from typing import NamedTuple
 
 from rigid_sim_ros.recording.errors import RecordingError
@@ -81,7 +84,7 @@ class History:
     def begin(self, time_ns):
         """Forget everything: the scene begins at a simulated time [ns]."""
         self._begin_ns = self._last_ns = time_ns
-        self._blocks = []
+        self._blocks = None
         self._block_bytes = 0
         self._records = bytearray()
         self.complete = True
@@ -89,7 +92,7 @@ class History:
 
     @property
     def byte_count(self):
-        """Bytes of memory it takes."""
+        """Bytes it takes, most of them in a file."""
         return self._block_bytes + len(self._records)
 
     def add_state(self, time_ns):
@@ -107,7 +110,11 @@ class History:
         if not self.complete:
             return []
         head = json.dumps({'history': 1, 'begin_ns': self._begin_ns, 'topics': self._topics})
-        return [head.encode() + b'\n', *self._blocks, self._packed()]
+        blocks = []
+        if self._blocks is not None:
+            self._blocks.seek(0)
+            blocks = [self._blocks.read()]
+        return [head.encode() + b'\n', *blocks, self._packed()]
 
     def _add(self, time_ns, *parts):
         self._last_ns = time_ns
@@ -120,10 +127,16 @@ class History:
 
     def _close_block(self):
         block = self._packed()
-        self._blocks.append(block)
         self._block_bytes += len(block)
         self._records.clear()
-        if self._block_bytes > self._largest:
+        try:
+            if self._blocks is None:
+                self._blocks = tempfile.TemporaryFile(prefix='rigid_sim_history_')
+            self._blocks.write(block)
+            has_place = self._block_bytes <= self._largest
+        except OSError:
+            has_place = False
+        if not has_place:
             self.begin(self._last_ns)
             self.complete = False
 
