@@ -20,6 +20,7 @@ The `Recorder` knows topics and bytes; this decides which topics, where to, and 
 
 from dataclasses import replace
 from datetime import datetime
+import os
 from pathlib import Path
 
 from rigid_sim_ros.messages import DiagnosticStatus, ERROR, OK, WARN
@@ -85,13 +86,7 @@ class Recording:
         if self.active:
             raise RecordingError(f'already {self.text}')
         self.stop()
-        self._recorder = Recorder(
-            self._next_path(), self._rows(),
-            compression=self._parameters.record_compression,
-            when_full=self._parameters.record_when_full,
-            max_bytes=round(1e6 * self._parameters.record_split_size),
-            max_duration=self._parameters.record_split_duration, scene=self._scene_text,
-            options=self._options(), history=self._history.pieces(), on_full=self._warn_full)
+        self._recorder = self._new_recorder()
         self._remark = '' if self._history.complete else _NO_HISTORY
         self.write(JOURNAL.name, time, self._line_of_parameters())
 
@@ -163,6 +158,23 @@ class Recording:
             'path': state.path, 'messages written': state.message_count,
             'bytes written': state.byte_count, 'messages waiting': state.queued_count,
             'messages lost': state.dropped_count})
+
+    def _new_recorder(self):
+        parameters = self._parameters
+        while True:
+            path = self._next_path()
+            try:
+                return Recorder(
+                    path, self._rows(), compression=parameters.record_compression,
+                    when_full=parameters.record_when_full,
+                    max_bytes=round(1e6 * parameters.record_split_size),
+                    max_duration=parameters.record_split_duration, scene=self._scene_text,
+                    options=self._options(), history=self._history.pieces(),
+                    on_full=self._warn_full)
+            except RecordingError:
+                # what is there stays; another name will do, unless it was given
+                if path == parameters.record_path or not os.path.lexists(path):
+                    raise
 
     def _next_path(self):
         """Return a path no recording of this run has had."""

@@ -14,6 +14,7 @@
 
 """Recording by the node, read back with a reader that is not ours."""
 
+from datetime import datetime, timedelta
 import os
 import signal
 
@@ -155,6 +156,21 @@ def test_a_folder_that_was_moved_away_is_told_when_it_is_stopped(tmp_path):
         assert process.running
     # the file itself is whole
     assert len(recording.read(tmp_path / 'moved').time) > 10
+
+
+def test_nodes_that_begin_in_the_same_second_record_beside_each_other(tmp_path):
+    (tmp_path / 'crowd.yaml').write_text(CROWD)
+    (tmp_path / 'recordings').mkdir()
+    # whatever the second is in which it begins, the folder is there
+    now = datetime.now()
+    for seconds in range(60):
+        time = now + timedelta(seconds=seconds)
+        (tmp_path / 'recordings' / f'crowd_{time:%Y_%m_%d-%H_%M_%S}').mkdir()
+    with NodeProcess(tmp_path, scene='crowd.yaml', record=True) as process:
+        process.wait_for_text('recording to ')
+        assert process.stop(signal.SIGINT)[0] == 0
+        path = path_in(process.error.splitlines()[-1])
+    assert path.endswith('_2') and messages_of(path, '/rigid_sim/poses')
 
 
 def test_path_that_exists_is_refused(tmp_path):
