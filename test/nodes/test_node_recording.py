@@ -148,6 +148,7 @@ def test_a_folder_that_was_moved_away_is_told_when_it_is_stopped(tmp_path):
     (tmp_path / 'crowd.yaml').write_text(CROWD)
     with NodeProcess(tmp_path, scene='crowd.yaml', record=True, record_path='bag') as process, \
             Client(process) as client:
+        process.wait_for_text('recording to ')
         poses = client.listen('~/poses')
         client.spin_until(lambda: len(poses) > 10, 'ten states')
         (tmp_path / 'bag').rename(tmp_path / 'moved')
