@@ -33,15 +33,12 @@ from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_
 from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members, undisturbed
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
-from rigid_sim_ros.engine.lasting_contact.pile.pile_step import NEVER, PileStep
+from rigid_sim_ros.engine.lasting_contact.pile.pile_step import NEVER, OVERLAP, PileStep
 from rigid_sim_ros.engine.lasting_contact.stepping import parts_of
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
 
 PUSH_ITERATIONS = 15
 """Of the solver to push overlaps out, at most; the rest is left to the next time."""
-
-OVERLAP = 3e-4
-"""Of the length scale: overlap at the end of a step for which it is not taken again."""
 
 PUSHED = 3e-6
 """Of the length scale: overlap that is pushed out, to a third."""
