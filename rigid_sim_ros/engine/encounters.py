@@ -20,10 +20,13 @@ spheres meet, then, once the flights have been searched, the instant of the firs
 A simulation only ever asks for the earliest.
 """
 
+from functools import partial
+from math import inf, nextafter
+
 import numpy as np
 
-from rigid_sim_ros.engine.broad_phase import meeting_times, swept_pairs
-from rigid_sim_ros.engine.time_of_impact import first_touches
+from rigid_sim_ros.engine.broad_phase import meeting_time, meeting_times, swept_pairs
+from rigid_sim_ros.engine.time_of_impact import first_touch, first_touches
 
 SEARCH_WINDOW = 0.25
 """
@@ -33,6 +36,9 @@ change of flight makes worthless, shorter searches the same arc more often.
 
 FOREVER = 1e300
 """Later than any time [s] that is asked for; what can never meet is due at infinity."""
+
+FEW, FEW_BOUNDS = 8, 4
+"""Up to so many pairs are searched, or bounded, one by one: faster (measured)."""
 
 RENEWED_PAIRS = 20_000
 """If new flights make more pairs than this, the whole list is made again by the broad phase."""
@@ -66,27 +72,25 @@ class Encounters:
         `guarded` holds the bodies a and b, (2, g), of pairs that touch now and were just told
         apart: they count as touching only once they are, below, deeper than rounding.
         """
-        self._drop(indices)
         self._flying[indices] = self._solid[indices] = True
-        self.active = bool(self._flying.any())
+        self.active = self.active or len(indices) > 0
         if len(indices) * int(self._solid.sum()) > RENEWED_PAIRS:
             self._renew(time)
         else:
-            self._append(*self._pairs_with(indices), time)
+            self._replace(indices, *self._pairs_with(indices), time)
         if guarded is not None and guarded.size:
             self._guard(guarded)
 
     def rest(self, indices, time):
         """Let bodies (k,) lie still from `time` [s] on: what flies may hit them."""
-        self._drop(indices)
         self._flying[indices] = False
         self.active = bool(self._flying.any())
         self._solid[indices] = True
-        self._append(*self._pairs_with(indices), time)
+        self._replace(indices, *self._pairs_with(indices), time)
 
     def hide(self, indices):
         """Nothing in flight meets these bodies (k,) until they fly or rest."""
-        self._drop(indices)
+        self._keep(self._without(indices))
         self._flying[indices] = self._solid[indices] = False
         self.active = bool(self._flying.any())
 
@@ -99,7 +103,7 @@ class Encounters:
             if time == self._horizon:
                 self._renew(time)
                 continue
-            first = self.due == time
+            first = (self.due == time).nonzero()[0]
             if self.found[first].all():
                 return time, self.body_a[first], self.body_b[first]
             self._search(end)
@@ -116,29 +120,59 @@ class Encounters:
 
     def _search(self, end):
         """Find the first touches of pairs that may touch until `end`, or when to look again."""
-        rows = np.flatnonzero(~self.found & (self.due <= end))
-        start = self.due[rows]
-        until = max(end, float(start.max()) + SEARCH_WINDOW)
-        a, b = self.body_a[rows], self.body_b[rows]
+        # nobody needs to know yet what comes after the first touch of all
+        first = self.due[self.found].min(initial=np.inf)
+        soon = min(end, self._next + SEARCH_WINDOW, first)
+        rows = ((self.due <= soon) & ~self.found).nonzero()[0]
         self._world.work.touch_searches += len(rows)
-        times = first_touches(self._world.bodies, self._flights, a, b, start, until,
+        search = self._search_few if len(rows) <= FEW else self._search_many
+        search(rows, min(max(end, soon + SEARCH_WINDOW), first))
+        self._next = min(self.due.min(), self._horizon)
+
+    def _search_few(self, rows, until):
+        """Search pairs (q,) one by one, none for longer than to the first touch found."""
+        for due, row in sorted(zip(self.due[rows].tolist(), rows.tolist())):
+            if due > until:
+                break
+            a, b = self.body_a[row:row + 1], self.body_b[row:row + 1]
+            time = first_touch(self._world.bodies, self._flights, a.item(), b.item(), due, until,
+                               self._guarded.item(row))
+            self.found[row] = time < inf
+            if time < inf:
+                until = time
+            else:
+                time = self._after(a, b, until).item()
+            self.due[row] = time
+
+    def _search_many(self, rows, until):
+        """Search pairs (q,) all at once."""
+        a, b = self.body_a[rows], self.body_b[rows]
+        times = first_touches(self._world.bodies, self._flights, a, b, self.due[rows], until,
                               self._guarded[rows])
         found = np.isfinite(times)
-        times[~found] = self._bounds(a[~found], b[~found], until)
         self.found[rows] = found
+        if not found.all():
+            times[~found] = self._after(a[~found], b[~found], until)
         self.due[rows] = times
-        self._next = min(self.due.min(), self._horizon)
+
+    def _after(self, a, b, time):
+        """Return when, (p,) [s], pairs that do not touch until and at `time` may."""
+        return np.maximum(self._bounds(a, b, time), nextafter(time, inf))
 
     def _bounds(self, a, b, time):
         """Return the times [s], (p,), from `time` on, before which pairs cannot touch."""
         self._world.work.pair_bounds += len(a)
+        if len(a) <= FEW_BOUNDS:
+            fall = partial(self._flights.fall, time)
+            return np.array([time + meeting_time(self._world.bodies, *pair, fall)
+                             for pair in zip(a.tolist(), b.tolist())])
         center, velocity = self._flights.translation(time)
         return time + meeting_times(self._world.bodies, a, b, center, velocity,
                                     self._flights.acceleration)
 
     def _pairs_with(self, indices):
         """Return the bodies a and b, (p,) each, of all pairs of these with what they may meet."""
-        others = np.flatnonzero(self._solid)
+        others = self._solid.nonzero()[0]
         if len(indices) == 1:
             others = others[(others != indices[0]) & (self._flying[indices[0]]
                                                       | self._flying[others])]
@@ -155,36 +189,49 @@ class Encounters:
 
     def _renew(self, time):
         """Start the list again with all pairs that may meet before a new horizon."""
-        self._drop(np.flatnonzero(self._flying))
+        self._keep(self._without(np.flatnonzero(self._flying)))
         center, velocity = self._flights.translation(time)
         a, b, horizon = swept_pairs(self._world.bodies, self._flying, self._solid, center,
                                     velocity, self._flights.acceleration)
         self._horizon = time + horizon
-        self._append(a, b, time)
+        self._replace(a[:0], a, b, time)
 
-    def _append(self, a, b, time):
-        """List pairs, unless they cannot meet before the horizon."""
+    def _replace(self, indices, a, b, time):
+        """List pairs in the place of those of bodies (k,), but none due after the horizon."""
         due = self._bounds(a, b, time)
         near = due <= min(self._horizon, FOREVER)
-        self._put(np.concatenate((self.body_a, a[near])), np.concatenate((self.body_b, b[near])),
-                  np.concatenate((self.due, due[near])),
-                  np.concatenate((self.found, np.zeros(near.sum(), dtype=bool))),
-                  np.concatenate((self._guarded, np.zeros(near.sum(), dtype=bool))))
+        columns = [a[near], b[near], due[near], *np.zeros((2, np.count_nonzero(near)), dtype=bool)]
+        keep = self._without(indices)
+        if keep.any():
+            columns = [np.concatenate((old[keep], new))
+                       for old, new in zip(self._columns(), columns)]
+        self._put(*columns)
 
-    def _drop(self, indices):
-        """Take the pairs of these bodies off the list."""
-        if not len(self.due):
-            return
+    def _without(self, indices):
+        """Return which pairs, (p,) bool, have none of these bodies (k,)."""
+        if len(indices) == 1:
+            return (self.body_a != indices) & (self.body_b != indices)
         gone = np.zeros(len(self._solid), dtype=bool)
         gone[indices] = True
-        keep = ~(gone[self.body_a] | gone[self.body_b])
-        self._put(self.body_a[keep], self.body_b[keep], self.due[keep], self.found[keep],
-                  self._guarded[keep])
+        return ~(gone[self.body_a] | gone[self.body_b])
+
+    def _keep(self, which):
+        """Take all other pairs off the list."""
+        if not which.all():
+            self._put(*(column[which] for column in self._columns()))
 
     def _guard(self, pairs):
         """Mark listed pairs, given as bodies (2, g), as just told apart."""
-        for a, b in np.sort(pairs, axis=0).T.tolist():
-            self._guarded |= (self.body_a == a) & (self.body_b == b)
+        if len(pairs[0]) <= FEW:
+            for a, b in zip(*pairs.tolist()):
+                self._guarded |= (self.body_a == min(a, b)) & (self.body_b == max(a, b))
+            return
+        count = len(self._solid)
+        pairs = pairs.min(axis=0) * count + pairs.max(axis=0)
+        self._guarded |= np.isin(self.body_a * count + self.body_b, pairs)
+
+    def _columns(self):
+        return self.body_a, self.body_b, self.due, self.found, self._guarded
 
     def _put(self, body_a, body_b, due, found, guarded):
         self.body_a, self.body_b, self.due = body_a, body_b, due

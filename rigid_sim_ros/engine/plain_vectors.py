@@ -62,9 +62,9 @@ def to_world(axes, vector):
     return x * a + y * d + z * g, x * b + y * e + z * h, x * c + y * f + z * i
 
 
-def corners(axes, half, direction):
+def corners(axes, half, direction, middle=0.0):
     """
-    Return how far the 8 vertices of a box are from its centre along `direction`.
+    Return where the 8 vertices of a box are along `direction` if its centre is at `middle`.
 
     In the order of `box_plane.VERTEX_SIGNS`; `half` holds half its sides.
     """
@@ -73,5 +73,6 @@ def corners(axes, half, direction):
     (p, q, r), (s, t, u), (v, w, o) = axes
     x, y, z = (a * (x * p + y * q + z * r), b * (x * s + y * t + z * u),
                c * (x * v + y * w + z * o))
-    return (-x - y - z, x - y - z, y - x - z, x + y - z,
-            z - x - y, x - y + z, y - x + z, x + y + z)
+    left, right, far, near = middle - x, middle + x, y + z, y - z
+    return (left - far, right - far, left + near, right + near,
+            left - near, right - near, left + far, right + far)

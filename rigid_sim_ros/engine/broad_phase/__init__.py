@@ -20,9 +20,9 @@ is proven apart.
 """
 
 from rigid_sim_ros.engine.broad_phase.candidates import candidate_pairs
-from rigid_sim_ros.engine.broad_phase.meeting import meeting_times
+from rigid_sim_ros.engine.broad_phase.meeting import meeting_time, meeting_times
 from rigid_sim_ros.engine.broad_phase.sphere_grid import spheres_with_others, spheres_with_spheres
 from rigid_sim_ros.engine.broad_phase.swept import swept_pairs
 
-__all__ = ['candidate_pairs', 'meeting_times', 'spheres_with_others', 'spheres_with_spheres',
-           'swept_pairs']
+__all__ = ['candidate_pairs', 'meeting_time', 'meeting_times', 'spheres_with_others',
+           'spheres_with_spheres', 'swept_pairs']

@@ -18,6 +18,8 @@ from math import inf, sqrt
 
 import numpy as np
 
+from rigid_sim_ros.engine.plain_vectors import difference
+from rigid_sim_ros.engine.plain_vectors import dot as dot_of_one
 from rigid_sim_ros.engine.rotation import cross, dot
 
 FEW = 4
@@ -53,7 +55,9 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
 
     """
     if len(pairs_a) <= FEW:
-        return np.array([_meeting_time(bodies, int(a), int(b), position, velocity, acceleration)
+        def motion(index):
+            return [values[:, index].tolist() for values in (position, velocity, acceleration)]
+        return np.array([meeting_time(bodies, int(a), int(b), motion)
                          for a, b in zip(pairs_a, pairs_b)])
     result = np.empty(len(pairs_a))
     body_count = bodies.body_count
@@ -121,19 +125,18 @@ def _march(reach, between, velocity, acceleration):
     return time
 
 
-def _meeting_time(bodies, a, b, position, velocity, acceleration):
-    """Return the meeting time [s] of one pair."""
+def meeting_time(bodies, a, b, motion):
+    """
+    Return the meeting time [s] of one pair.
+
+    `motion(index)` returns position, velocity and acceleration of a body, (3,) each.
+    """
     if max(a, b) < bodies.body_count:
-        column = [values[:, b:b + 1] - values[:, a:a + 1]
-                  for values in (position, velocity, acceleration)]
         reach = bodies.bounding_radius.item(a) + bodies.bounding_radius.item(b)
-        return sphere_meeting_time(reach, *(values.ravel().tolist() for values in column))
+        return sphere_meeting_time(reach, *map(difference, motion(a), motion(b)))
     body, plane = min(a, b), max(a, b)
-    nx, ny, nz = bodies.plane_normal[:, plane].tolist()
-    offset = bodies.plane_offset.item(plane)
-    height, speed, pull = (
-        nx * values.item(0, body) + ny * values.item(1, body) + nz * values.item(2, body)
-        for values in (position, velocity, acceleration))
+    normal, offset = bodies.plane_normal[:, plane].tolist(), bodies.plane_offset.item(plane)
+    height, speed, pull = (dot_of_one(normal, vector) for vector in motion(body))
     height -= offset
     gap = height - bodies.bounding_radius.item(body) - _CLOSER * (abs(height) + abs(offset))
     return first_fall(gap, speed, pull)

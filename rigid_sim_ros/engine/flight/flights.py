@@ -164,6 +164,12 @@ class Flights:
         """
         return self.trajectory(index)(time)
 
+    def fall(self, time, index):
+        """Return position, velocity and acceleration of one centre of mass in plain floats."""
+        table = self._translations
+        position, velocity = table.trajectory(index)(time - table.start.item(index))
+        return position, velocity, table.acceleration[:, index].tolist()
+
     def trajectory(self, index):
         """Return `motion` of one body as a function of time, until it begins another flight."""
         start = self._translations.start.item(index)

@@ -65,8 +65,11 @@ def poisson(response, velocity, friction, restitution):
     impulse = solve(_problem(response, velocity, friction, np.zeros(count))).force
     if not restitution.any():
         return impulse
-    floor = (1 + restitution) * impulse[:count]
-    return solve(_problem(response, velocity, friction, floor)).force
+    rebound = 1 + restitution
+    floor = rebound * impulse[:count]
+    # where nothing slides and all rebound alike, all of the impulse grows alike
+    guess = (impulse.reshape(3, count) * rebound).ravel()
+    return solve(_problem(response, velocity, friction, floor), guess).force
 
 
 def energy_change(response, velocity, impulse):

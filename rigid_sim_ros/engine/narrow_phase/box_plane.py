@@ -62,16 +62,19 @@ def contacts_of_one(bodies, box, plane, position, orientation, margin):
     normal = bodies.plane_normal[:, plane].tolist()
     axes = axes_of(orientation[:, box].tolist())
     height = plain_dot(normal, center) - bodies.plane_offset.item(plane)
-    points, gaps = [], []
+    rows = []
     for signs, above in zip(_CORNERS, corners(axes, half, normal)):
         gap = height + above
         if gap < margin:
             arm = to_world(axes, [sign * extent for sign, extent in zip(signs, half)])
-            points.append([x + r - 0.5 * gap * n for x, r, n in zip(center, arm, normal)])
-            gaps.append(gap)
-    count = len(gaps)
-    zeros = np.zeros((3, count))
-    return Contacts(
-        np.full(count, box), np.full(count, plane), np.array(points).reshape(-1, 3).T,
-        np.repeat(-bodies.plane_normal[:, plane:plane + 1], count, axis=1), np.array(gaps),
-        np.full(count, FACE_B), zeros, zeros)
+            rows.append([x + r - 0.5 * gap * n for x, r, n in zip(center, arm, normal)] + [gap])
+    count = len(rows)
+    if not count:
+        return Contacts.none()
+    values, indices = np.empty((10, count)), np.empty((3, count), dtype=int)
+    values[:4] = np.array(rows).T
+    values[4:7] = -bodies.plane_normal[:, plane:plane + 1]
+    values[7:] = 0.0
+    indices[0], indices[1], indices[2] = box, plane, FACE_B
+    return Contacts(indices[0], indices[1], values[:3], values[4:7], values[3], indices[2],
+                    values[7:], values[7:])

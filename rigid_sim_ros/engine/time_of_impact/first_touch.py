@@ -75,7 +75,7 @@ def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
     start = np.full(len(pairs_a), start, dtype=float)
     if len(pairs_a) <= FEW:
         return np.array([
-            _first_touch(bodies, flights, int(a), int(b), float(began), end, [not untold])
+            first_touch(bodies, flights, int(a), int(b), float(began), end, untold)
             for a, b, began, untold in zip(pairs_a, pairs_b, start, guarded)])
     times = np.full(len(pairs_a), np.inf)
     for group in PairGroups(bodies, pairs_a, pairs_b).groups:
@@ -90,8 +90,13 @@ def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
     return times
 
 
+def first_touch(bodies, flights, a, b, start, end, guarded):
+    """Return the first touch [s] of one pair, in plain floats: `first_touches`."""
+    return _first_touch(bodies, flights, a, b, start, end, [not guarded])
+
+
 def _first_touch(bodies, flights, a, b, start, end, armed):
-    """Return the first touch [s] of one pair, in plain floats."""
+    """Return the first touch [s] of one pair some of whose lines are armed."""
     kinds = bodies.kinds[a], bodies.kinds[b]
     if kinds not in PAIRS:
         a, b, kinds = b, a, kinds[::-1]

@@ -34,14 +34,14 @@ def box_box(a, b, end):
             normal = -x, -y, -z
         rate = _rate(normal, edge, other_edge, spin, other_spin)
         across, other_across = cross(normal, spin), cross(normal, other_spin)
-        along = [
-            [q - p for p in a.corners(axes, one) for q in b.corners(other_axes, other)]
-            for one, other in ((normal, normal), (across, other_across), (rate, rate),
-                               (cross(rate, spin), cross(rate, other_spin)))]
+        of_a = [a.corners(axes, direction) for direction in (
+            normal, across, rate, cross(rate, spin))]
+        of_b = [b.corners(other_axes, direction) for direction in (
+            normal, other_across, rate, cross(rate, other_spin))]
         left = end - time
         return turning(
             a, b, normal, rate, position, other_position, difference(velocity, other_velocity),
-            0.0, *along, a.vertex_pull(across, left) + b.vertex_pull(other_across, left),
+            0.0, of_a, of_b, a.vertex_pull(across, left) + b.vertex_pull(other_across, left),
             a.vertex_acceleration() + b.vertex_acceleration())
     return lines
 

@@ -19,12 +19,18 @@ Each function returns the one that `plain_march.march_one` asks for the lines at
 is the end of the search.
 """
 
+from functools import partial
 from math import copysign
+from operator import add
 
 from rigid_sim_ros.engine.broad_phase.meeting import first_fall, sphere_meeting_time
 from rigid_sim_ros.engine.plain_vectors import (
     axes_of, corners, cross, difference, dot, length, to_world)
 from rigid_sim_ros.engine.time_of_impact.pair_lines import LIMIT, NEVER
+
+
+POINT = ((0.0,),) * 4
+"""What a centre has in the place of vertices, see `turning`."""
 
 
 class PlainBody:
@@ -50,9 +56,9 @@ class PlainBody:
         """Return a bound [m/s^2] of how turning accelerates a vertex."""
         return (self.spin_bound * self.spin_bound + self.spin_change) * self.radius
 
-    def corners(self, axes, direction):
-        """Return how far [m] each of the 8 vertices is from the centre along `direction`."""
-        return corners(axes, self.half, direction)
+    def corners(self, axes, direction, middle=0.0):
+        """Return where [m] the 8 vertices are along `direction`: `plain_vectors.corners`."""
+        return corners(axes, self.half, direction, middle)
 
 
 def box_plane(a, normal, offset, end):
@@ -66,8 +72,7 @@ def box_plane(a, normal, offset, end):
         height, speed = center - offset, dot(normal, velocity)
         across = cross(normal, spin)
         pull = a.vertex_pull(across, end - time) - push
-        return ([height + z for z in a.corners(axes, normal)],
-                [speed + u for u in a.corners(axes, across)], [pull] * 8,
+        return (a.corners(axes, normal, height), a.corners(axes, across, speed), [pull] * 8,
                 NEVER, None, 0.0, first_fall(height - a.radius, speed, push),
                 abs(center) + abs(offset) + a.radius)
     return lines
@@ -102,7 +107,7 @@ def sphere_sphere(a, b, end):
         speed = dot(normal, velocity)
         rate = tuple((v - speed * n) * inverse for v, n in zip(velocity, normal))
         return turning(a, b, normal, rate, start, there, velocity, reach,
-                       *[(0.0,)] * 4, 0.0, 0.0)
+                       POINT, POINT, 0.0, 0.0)
     return lines
 
 
@@ -127,10 +132,15 @@ def sphere_box(a, b, end):
         across = cross(normal, spin)
         return turning(
             a, b, normal, rate, position, other_position, difference(velocity, other_velocity),
-            a.radius, *(b.corners(axes, direction) for direction in (
-                normal, across, rate, cross(rate, spin))),
+            a.radius, POINT, [b.corners(axes, direction) for direction in (
+                normal, across, rate, cross(rate, spin))],
             b.vertex_pull(across, end - time), b.vertex_acceleration())
     return lines
+
+
+def differences(values, other_values, constant):
+    """Return constant + q - p for every p of some values and every q of others."""
+    return [q - p for p in [p - constant for p in values] for q in other_values]
 
 
 def nearest(center, half):
@@ -149,19 +159,18 @@ def nearest(center, half):
 
 
 def turning(a, b, normal, rate, position, other_position, velocity, radius,
-            heights, speeds, rate_heights, rate_speeds, pull, acceleration):
+            of_a, of_b, pull, acceleration):
     """
     Return the lines of points of a and b along a normal that turns: `pair_lines._turning`.
 
-    Heights and speeds, along the normal and along its rate, are those of points of b beyond
-    points of a, seen from the centres.
+    Of each body, where its points are along n, n x w, the rate n' and n' x w, seen from its
+    centre: four sequences.
     """
     between = difference(position, other_position)
     push = difference(a.acceleration, b.acceleration)
     turn = length(rate)
     height = dot(normal, between) - radius
     held_speed, held_pull = dot(normal, velocity), pull - dot(normal, push)
-    held_speeds = [held_speed + u for u in speeds]
     turned, swing = dot(rate, between), dot(rate, velocity)
     strongest = (held_pull - 2 * swing + LIMIT * (acceleration + length(push))
                  + radius * turn * turn)
@@ -169,8 +178,13 @@ def turning(a, b, normal, rate, position, other_position, velocity, radius,
     apart = 0.0
     if dot(between, between) > reach * reach:
         apart = sphere_meeting_time(reach, between, velocity, push)
-    return ([height + z for z in heights],
-            [u + turned + z for u, z in zip(held_speeds, rate_heights)],
-            [strongest - 2 * u for u in rate_speeds], LIMIT / turn if turn * NEVER > 1 else NEVER,
-            held_speeds, held_pull, apart,
+    (heights, across, turning_heights, turning_speeds) = of_a
+    (other_heights, other_across, other_turning_heights, other_turning_speeds) = of_b
+    return (differences(heights, other_heights, height),
+            differences(map(add, across, turning_heights),
+                        list(map(add, other_across, other_turning_heights)), held_speed + turned),
+            differences([-2 * u for u in turning_speeds],
+                        [-2 * u for u in other_turning_speeds], strongest),
+            LIMIT / turn if turn * NEVER > 1 else NEVER,
+            partial(differences, across, other_across, held_speed), held_pull, apart,
             max(map(abs, position)) + max(map(abs, other_position)) + reach)

@@ -24,7 +24,8 @@ def march_one(lines, size, start, end, armed):
     Return the first touch [s] of one pair, or infinity: `march.march` in plain floats.
 
     `lines(time)` returns what `march.Lines` holds as a tuple: heights, speeds and pulls (lists of
-    m), limit, held speeds and the held pull (None and 0 if nothing turns), apart and scale.
+    m), limit, what returns the held speeds and the held pull (None and 0 if nothing turns), apart
+    and scale.
     `armed` lists which of the m lines are, or one for all of them.
     """
     time, hovering = start, 0
@@ -43,7 +44,7 @@ def march_one(lines, size, start, end, armed):
             return time
         step, falling = first_end(heights, speeds, pulls)
         if step > limit and held_speeds:
-            step = max(limit, first_end(heights, held_speeds, [held_pull] * len(heights))[0])
+            step = max(limit, first_end(heights, held_speeds(), [held_pull] * len(heights))[0])
         hovering = hovering + 1 if lowest < ARM * size else 0
         reached = time + max(step, apart)
         if falling and reached <= time or hovering > HOVER_COUNT:
@@ -65,25 +66,30 @@ def _armed(armed, heights, speeds, pulls, limit, size):
 
 def first_end(heights, speeds, pulls):
     """Return when [s] the first minorant ends, and whether its line is falling now."""
-    first, falling = inf, False
+    # likely the lowest line: then hardly any other needs a root
+    lowest = heights.index(min(heights))
+    first, falling = _end(heights[lowest], speeds[lowest], pulls[lowest]), speeds[lowest] <= 0
     for z, u, pull in zip(heights, speeds, pulls):
-        if pull > 0:
-            # concave: still above zero at the first end so far, so it ends later
-            if first < inf and z + first * (u - 0.5 * pull * first) > 0:
-                continue
-        elif u >= 0:
+        # concave: still above zero at the first end so far, so it ends later
+        if pull > 0 and z + first * (u - 0.5 * pull * first) > 0:
             continue
-        z = max(z, 0.0)
-        square = u * u + 2 * pull * z
-        if square < 0:
-            continue
-        root = sqrt(square)
-        if u > 0:
-            ends = (u + root) / pull
-        elif root > u:
-            ends = 2 * z / (root - u)
-        else:
-            ends = 0.0 if z == 0 else inf
+        ends = _end(z, u, pull)
         if ends < first:
             first, falling = ends, u <= 0
-    return first, falling
+    return first, first < inf and falling
+
+
+def _end(height, speed, pull):
+    """Return how long [s] height + speed s - pull s^2 / 2 stays above zero."""
+    if pull <= 0 and speed >= 0:
+        return inf
+    height = max(height, 0.0)
+    square = speed * speed + 2 * pull * height
+    if square < 0:
+        return inf
+    root = sqrt(square)
+    if speed > 0:
+        return (speed + root) / pull
+    if root > speed:
+        return 2 * height / (root - speed)
+    return 0.0 if height == 0 else inf

@@ -144,7 +144,7 @@ def test_plain_floats_say_what_arrays_say(kinds):
         assert apart == pytest.approx(many.apart[pair], rel=1e-9)
         assert scale >= 0.3 * many.scale[pair]
         if held_speeds is not None:
-            assert held_speeds == pytest.approx(many.held_speed[:, pair], abs=1e-12)
+            assert held_speeds() == pytest.approx(many.held_speed[:, pair], abs=1e-12)
             assert held_pull == pytest.approx(many.held_pull[pair], rel=1e-9)
 
 
@@ -163,7 +163,7 @@ def test_one_by_one_the_march_ends_where_all_together_do(kinds, guarded):
             held = at.held_speed is not None
             return (at.height[:, 0].tolist(), at.speed[:, 0].tolist(),
                     np.broadcast_to(at.pull, at.height.shape)[:, 0].tolist(), at.limit.item(),
-                    at.held_speed[:, 0].tolist() if held else None,
+                    at.held_speed[:, 0].tolist if held else None,
                     at.held_pull.item() if held else 0.0, at.apart.item(), at.scale.item())
         return one
     for pair in range(0, COUNT, 3):
