@@ -20,10 +20,9 @@ One file a pair of shapes, one row of `table.PAIRS` each.
 
 import numpy as np
 
-from rigid_sim_ros.engine.bodies import PLANE
-from rigid_sim_ros.engine.narrow_phase.box_plane import contacts_of_one
 from rigid_sim_ros.engine.narrow_phase.kinematics import gap_acceleration_bias
 from rigid_sim_ros.engine.narrow_phase.pair_groups import PairGroups, swap
+from rigid_sim_ros.engine.narrow_phase.plain_pairs import contacts_of_one, PLAIN_TESTS
 from rigid_sim_ros.engine.narrow_phase.table import PairOfShapes, PAIRS
 
 __all__ = ['find_contacts', 'gap_acceleration_bias', 'PairGroups', 'PairOfShapes', 'PAIRS',
@@ -34,8 +33,8 @@ def find_contacts(bodies, pairs_a, pairs_b, position, orientation, margin):
     """Return `PairGroups.find_contacts` of pairs, (p,) int, that are looked at only once."""
     if len(pairs_a) == 1:
         a, b = int(pairs_a[0]), int(pairs_b[0])
-        # one box that lands: the commonest call, ten times faster without arrays
-        if (bodies.kinds[a], bodies.kinds[b]) == ('box', PLANE):
+        # one body that lands: the commonest call, ten times faster without arrays
+        if (bodies.kinds[a], bodies.kinds[b]) in PLAIN_TESTS:
             return contacts_of_one(bodies, a, b, position, orientation,
                                    float(np.ravel(margin)[0]))
     return PairGroups(bodies, pairs_a, pairs_b).find_contacts(position, orientation, margin)

@@ -17,15 +17,11 @@
 import numpy as np
 
 from rigid_sim_ros.engine.contacts import Contacts, FACE_B
-from rigid_sim_ros.engine.plain_vectors import axes_of, corners, to_world
-from rigid_sim_ros.engine.plain_vectors import dot as plain_dot
 from rigid_sim_ros.engine.rotation import dot, transform_transposed
 
 VERTEX_SIGNS = np.array([[1 if vertex >> axis & 1 else -1 for vertex in range(8)]
                          for axis in range(3)], dtype=float)
 """(3, 8): the vertices of a box are these times its half extents, in body axes."""
-
-_CORNERS = VERTEX_SIGNS.T.tolist()
 
 
 def separation(a, b):
@@ -50,31 +46,3 @@ def contacts(a, b, margin):
     zeros = np.zeros_like(normal)
     return Contacts(a.index[pair], b.index[pair], point, normal, gap,
                     np.full(len(pair), FACE_B), zeros, zeros)
-
-
-def contacts_of_one(bodies, box, plane, position, orientation, margin):
-    """
-    Return `contacts` of one box and one plane, by their indices, in plain floats.
-
-    Positions (3, n) and orientations (4, n) are those of all bodies.
-    """
-    center, half = position[:, box].tolist(), bodies.half_extents[:, box].tolist()
-    normal = bodies.plane_normal[:, plane].tolist()
-    axes = axes_of(orientation[:, box].tolist())
-    height = plain_dot(normal, center) - bodies.plane_offset.item(plane)
-    rows = []
-    for signs, above in zip(_CORNERS, corners(axes, half, normal)):
-        gap = height + above
-        if gap < margin:
-            arm = to_world(axes, [sign * extent for sign, extent in zip(signs, half)])
-            rows.append([x + r - 0.5 * gap * n for x, r, n in zip(center, arm, normal)] + [gap])
-    count = len(rows)
-    if not count:
-        return Contacts.none()
-    values, indices = np.empty((10, count)), np.empty((3, count), dtype=int)
-    values[:4] = np.array(rows).T
-    values[4:7] = -bodies.plane_normal[:, plane:plane + 1]
-    values[7:] = 0.0
-    indices[0], indices[1], indices[2] = box, plane, FACE_B
-    return Contacts(indices[0], indices[1], values[:3], values[4:7], values[3], indices[2],
-                    values[7:], values[7:])

@@ -106,19 +106,8 @@ class PlainPairs:
     def find_contacts(self, position, orientation, margin):
         """Return `Contacts` as `PairGroups.find_contacts` does; the margin is (p,) [m]."""
         solids = self._placed(position, orientation)
-        values, body_a, body_b, features = [], [], [], []
-        for a, b, limit in zip(self._index_a, self._index_b, margin.tolist()):
-            for point, normal, gap, feature, edge_a, edge_b in self._test.contacts(
-                    solids[a], solids[b], limit):
-                values.append((*point, *normal, gap, *edge_a, *edge_b))
-                body_a.append(a)
-                body_b.append(b)
-                features.append(feature)
-        if not values:
-            return Contacts.none()
-        values = np.ascontiguousarray(np.array(values).T)
-        return Contacts(np.array(body_a), np.array(body_b), values[:3], values[3:6], values[6],
-                        np.array(features), values[7:10], values[10:])
+        return _joined((a, b, self._test.contacts(solids[a], solids[b], limit))
+                       for a, b, limit in zip(self._index_a, self._index_b, margin.tolist()))
 
     def separations(self, position, orientation):
         """Return the signed distances [m], a list, as `PairGroups.separations` does."""
@@ -134,3 +123,34 @@ class PlainPairs:
                 orientation.take(self._index, axis=1).T.tolist()):
             solids[index] = PlainBox(center, turn, *side)
         return solids
+
+
+def contacts_of_one(bodies, a, b, position, orientation, margin):
+    """
+    Return `Contacts` of bodies a and b, whose kinds are a row of `PLAIN_TESTS`, looked at once.
+
+    Positions (3, n) and orientations (4, n) are those of all bodies, the margin is in m.
+    """
+    solids = [
+        PlainPlane(bodies.plane_normal[:, index].tolist(), bodies.plane_offset.item(index))
+        if bodies.kinds[index] == PLANE else
+        PlainBox(position[:, index].tolist(), orientation[:, index].tolist(),
+                 bodies.half_extents[:, index].tolist(), bodies.bounding_radius.item(index))
+        for index in (a, b)]
+    test = PLAIN_TESTS[bodies.kinds[a], bodies.kinds[b]]
+    return _joined([(a, b, test.contacts(*solids, margin))])
+
+
+def _joined(found):
+    """Return as `Contacts` what was found of bodies: (a, b, list of contacts as tuples)."""
+    values, indices = [], []
+    for a, b, contacts in found:
+        for point, normal, gap, feature, edge_a, edge_b in contacts:
+            values.append((*point, *normal, *edge_a, *edge_b, gap))
+            indices.append((a, b, feature))
+    if not values:
+        return Contacts.none()
+    values = np.ascontiguousarray(np.array(values).T)
+    body_a, body_b, feature = np.ascontiguousarray(np.array(indices).T)
+    return Contacts(body_a, body_b, values[:3], values[3:6], values[12], feature, values[6:9],
+                    values[9:12])
