@@ -21,14 +21,18 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
-from rigid_sim_ros.engine.friction import restitution_of_one, surfaces_of
+from rigid_sim_ros.engine.friction import mixed_restitution, restitution_of_one, surfaces_of
 from rigid_sim_ros.engine.graph import contact_groups, lone_contacts
-from rigid_sim_ros.engine.impacts import OneContact, resolve_impact, resolve_one
+from rigid_sim_ros.engine.impacts import (
+    one_contact, resolve_impact, resolve_one, separate_contacts)
 from rigid_sim_ros.engine.narrow_phase import find_contacts
 from rigid_sim_ros.engine.plain_vectors import dot, length
 
 FEW = 8
 """Up to so many bodies are placed one by one in plain floats, which is faster (measured)."""
+
+FEW_ALONE = 3
+"""The same of contacts that share no body."""
 
 TOUCH_MARGIN = 1e-9
 """
@@ -82,6 +86,19 @@ def stick_speed(bodies, acceleration, angular, body_a, body_b):
     return (ELASTIC_STICK_SPEED if elastic else STICK_SPEED) * sqrt(strongest * largest)
 
 
+def stick_speeds(bodies, acceleration, angular, body_a, body_b):
+    """Return the `stick_speed` of each of contacts (k,) by itself, arrays (k,)."""
+    strongest, largest = [], []
+    for index in (body_a, body_b):
+        radius = np.where(index < bodies.moving_count, bodies.bounding_radius[index], 0.0)
+        pull, rate = acceleration[:, index], angular[:, index]
+        strongest.append(np.sqrt(rotation.dot(pull, pull)) + rotation.dot(rate, rate) * radius)
+        largest.append(radius)
+    stick = np.where(mixed_restitution(bodies, body_a, body_b) < 1, STICK_SPEED,
+                     ELASTIC_STICK_SPEED)
+    return stick * np.sqrt(np.maximum(*strongest) * np.maximum(*largest))
+
+
 class Touches:
     """
     Resolves touches; keeps arrays of all columns, of which those involved are filled in.
@@ -119,9 +136,10 @@ class Touches:
                                  margin * size)
         stays = np.zeros(bodies.count, dtype=bool)
         lone = lone_contacts(bodies, contacts)
-        if lone.any():
-            self._apply_lone(time, contacts, lone, stays)
-        if not lone.all():
+        if lone.all():
+            self._apply_alone(time, contacts, stays)
+        else:
+            self._apply_alone(time, contacts.select(lone), stays)
             for group in contact_groups(bodies, contacts.select(~lone)):
                 self._apply(time, group, stays)
         return Touch(*(values.take(indices, axis=-1) for values in (
@@ -139,28 +157,62 @@ class Touches:
         self._linear[:, indices], self._angular[:, indices] = (
             self._flights.velocities(time, indices))
 
-    def _apply_lone(self, time, contacts, lone, stays):
-        """Apply the impulses of contacts whose bodies are in no other, in plain floats."""
+    def _apply_alone(self, time, contacts, stays):
+        """Apply the impulses of contacts that share no body, and mark those that stay together."""
+        few = contacts.count <= FEW_ALONE
+        (self._apply_one_by_one if few else self._apply_together)(time, contacts, stays)
+
+    def _apply_one_by_one(self, time, contacts, stays):
+        """Apply the impulses of contacts that share no body, in plain floats."""
         world = self._world
         motion = self._position, self._orientation, self._linear, self._angular
         for a, b, point, normal in zip(
-                contacts.body_a[lone].tolist(), contacts.body_b[lone].tolist(),
-                contacts.point.T[lone].tolist(), contacts.normal.T[lone].tolist()):
-            contact = OneContact(world.bodies, a, b, point, normal, *motion)
+                contacts.body_a.tolist(), contacts.body_b.tolist(),
+                contacts.point.T.tolist(), contacts.normal.T.tolist()):
+            contact = one_contact(world.bodies, a, b, point, normal, *motion)
             threshold = stick_speed(world.bodies, self._flights.acceleration, self._angular,
                                     (a,), (b,))
             parting = contact.velocity[0]
             if parting < 0.0:
-                impulse = resolve_one(contact, world.impact_law, threshold)
+                impulse = resolve_one(contact.response, contact.velocity, contact.friction,
+                                      surfaces_of(world.bodies, a, b), world.impact_law, threshold)
                 world.work.impacts += 1
                 if -parting > threshold:
                     world.events.append(time, a, b, IMPACT, point, normal,
                                         contact.world(impulse), -parting)
                 parting = contact.parting_speed(impulse)
-                for index, linear, angular in contact.velocities(impulse):
-                    self._linear[:, index], self._angular[:, index] = linear, angular
+                for index, linear, angular in contact.changes(impulse):
+                    self._linear[:, index] += linear
+                    self._angular[:, index] += angular
             if parting <= threshold:
                 stays[a] = stays[b] = True
+
+    def _apply_together(self, time, contacts, stays):
+        """Do the same with arrays, but for the law itself."""
+        world, bodies = self._world, self._world.bodies
+        contact = separate_contacts(bodies, contacts, self._position, self._orientation,
+                                    self._linear, self._angular)
+        threshold = stick_speeds(bodies, self._flights.acceleration, self._angular,
+                                 contacts.body_a, contacts.body_b)
+        impulse = np.zeros((3, contacts.count))
+        speed = -contact.velocity[0]
+        response, velocity = (np.array(rows).T.tolist() for rows in (
+            contact.response, contact.velocity))
+        struck = np.flatnonzero(speed > 0.0)
+        for row in struck.tolist():
+            surfaces = surfaces_of(bodies, contacts.body_a.item(row), contacts.body_b.item(row))
+            impulse[:, row] = resolve_one(
+                response[row], velocity[row], contact.friction.item(row), surfaces,
+                world.impact_law, threshold.item(row))
+        world.work.impacts += len(struck)
+        for index, linear, angular in contact.changes(impulse):
+            # what is fixed is listed many times, and does not change
+            moves = index < bodies.moving_count
+            self._linear[:, index[moves]] += np.array(linear)[:, moves]
+            self._angular[:, index[moves]] += np.array(angular)[:, moves]
+        self._note(time, contacts, np.array(contact.world(impulse)), speed, threshold)
+        lasting = contact.parting_speed(impulse) <= threshold
+        stays[contacts.body_a[lasting]] = stays[contacts.body_b[lasting]] = True
 
     def _apply(self, time, contacts, stays):
         """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
@@ -180,10 +232,14 @@ class Touches:
         self._linear[:, impact.touched] += impact.linear
         self._angular[:, impact.touched] += impact.angular
         world.work.impacts += 1
-        for row in np.flatnonzero(impact.speed > threshold):
-            world.events.append(
+        self._note(time, contacts, impact.impulse, impact.speed, threshold)
+
+    def _note(self, time, contacts, impulse, speed, threshold):
+        """Note those of contacts (k,) with an impulse (3, k) that approached fast enough."""
+        for row in np.flatnonzero(speed > threshold).tolist():
+            self._world.events.append(
                 time, contacts.body_a[row], contacts.body_b[row], IMPACT, contacts.point[:, row],
-                contacts.normal[:, row], impact.impulse[:, row], impact.speed[row])
+                contacts.normal[:, row], impulse[:, row], speed[row])
 
     def _parting_speed(self, contacts):
         """Return the speeds (k,) [m/s] at which contact points part along their normals."""

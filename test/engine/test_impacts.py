@@ -25,10 +25,12 @@ import pytest
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.contacts import Contacts
-from rigid_sim_ros.engine.impacts import IMPACT_LAWS, resolve_impact
+from rigid_sim_ros.engine.impacts import (
+    IMPACT_LAWS, laws, one_contact, resolve_impact, separate_contacts)
 from rigid_sim_ros.engine.impacts.stronge import stronge_one
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
+from rigid_sim_ros.engine.solvers import contact_rows
 
 LAWS = tuple(IMPACT_LAWS)
 
@@ -385,3 +387,53 @@ def euler(response, velocity, friction, restitution, count):
             least = work - 0.5 * following[0] ** 2 / (following[0] - velocity[0]) * step
             goal = (1 - restitution ** 2) * least
         impulse, velocity = impulse + part, following
+
+
+@pytest.mark.parametrize('law', ['poisson', 'newton'])
+def test_all_sticking_corners_share_as_the_solver_has_it(law):
+    """The forces of four corners are not unique: the shorter way must find the same ones."""
+    random = np.random.default_rng(5)
+    stuck = 0
+    for _ in range(30):
+        friction = np.full(4, random.uniform(0.2, 2.0))
+        bodies = scene_of(Cube(2.0))
+        motion = Motion(bodies, [(0, 0, 1)], linear=[random.normal(size=3) - (0, 0, 3)],
+                        angular=[random.normal(size=3)])
+        contacts = touching([(0, 1)] * 4, *corners(2.0))
+        rows = contact_rows(bodies, contacts, motion.position, motion.orientation)
+        problem = rows.response(), rows.motion(motion.linear, motion.angular), friction
+        restitution = np.zeros(4)
+        expected = IMPACT_LAWS[law].many(*problem, restitution)
+        found = IMPACT_LAWS[law].many(*problem, restitution, rows.scaled)
+        np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
+        stuck += laws.sticking(rows.scaled, problem[1], friction) is not None
+    assert 5 < stuck < 25
+
+
+@pytest.mark.parametrize('shape', [Cube(2.0), Box((1.0, 2.0, 3.0))])
+def test_separate_contacts_are_as_each_alone(shape):
+    """Together as arrays, or each in plain floats: bodies on bodies, and bodies on a plane."""
+    random = np.random.default_rng(6)
+    bodies = scene_of(*[shape] * 6, masses=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], friction=0.5)
+    motion = Motion(bodies, random.normal(size=(6, 3)), random.normal(size=(6, 4)),
+                    random.normal(size=(6, 3)), random.normal(size=(6, 3)))
+    motion.orientation /= np.linalg.norm(motion.orientation, axis=0)
+    normals = random.normal(size=(4, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    contacts = touching([(0, 1), (2, 6), (5, 3), (4, 6)], random.normal(size=(4, 3)), normals)
+    state = motion.position, motion.orientation, motion.linear, motion.angular
+    together = separate_contacts(bodies, contacts, *state)
+    impulse = random.normal(size=(3, 4))
+    for row in range(4):
+        alone = one_contact(bodies, contacts.body_a.item(row), contacts.body_b.item(row),
+                            contacts.point[:, row].tolist(), contacts.normal[:, row].tolist(),
+                            *state)
+        for many, one in ((together.response, alone.response),
+                          (together.velocity, alone.velocity),
+                          (together.world(impulse), alone.world(impulse[:, row]))):
+            np.testing.assert_allclose(np.array(many)[:, row], one, rtol=1e-12, atol=1e-13)
+        assert together.friction[row] == pytest.approx(alone.friction, rel=1e-15)
+        changes = {index[row]: (np.array(linear)[:, row], np.array(angular)[:, row])
+                   for index, linear, angular in together.changes(impulse)}
+        for index, linear, angular in alone.changes(impulse[:, row]):
+            np.testing.assert_allclose(changes[index], (linear, angular), rtol=1e-11, atol=1e-13)

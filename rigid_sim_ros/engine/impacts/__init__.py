@@ -32,12 +32,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution
+from rigid_sim_ros.engine.friction import (
+    mixed_friction, mixed_restitution, restitution_of_one, surfaces_of)
 from rigid_sim_ros.engine.impacts import laws, stronge
-from rigid_sim_ros.engine.impacts.one_contact import OneContact
+from rigid_sim_ros.engine.impacts.one_contact import one_contact, separate_contacts
 from rigid_sim_ros.engine.solvers import contact_rows
 
-__all__ = ['Impact', 'IMPACT_LAWS', 'ImpactLaw', 'OneContact', 'resolve_impact', 'resolve_one']
+__all__ = ['Impact', 'IMPACT_LAWS', 'ImpactLaw', 'one_contact', 'resolve_impact', 'resolve_one',
+           'separate_contacts']
 
 
 class ImpactLaw(NamedTuple):
@@ -45,7 +47,8 @@ class ImpactLaw(NamedTuple):
     What a law gives for one contact in plain floats, and for several as arrays.
 
     Both take the response, the velocity across the contacts before, friction and restitution, and
-    return the impulse in contact axes; see `solvers.problem` for shapes.
+    return the impulse in contact axes; see `solvers.problem` for shapes. For several the factor of
+    the response may follow, `solvers.ContactRows.scaled`: it saves time.
     """
 
     one: callable
@@ -89,12 +92,10 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
     rebound. Energy never grows: should a law raise it, all restitutions are lowered together
     until it does not.
     """
-    a, b = contacts.body_a, contacts.body_b
     if contacts.count == 1:
-        return _impact_of_one(OneContact(
-            bodies, a.item(), b.item(), contacts.point[:, 0].tolist(),
-            contacts.normal[:, 0].tolist(), position, orientation, linear_velocity,
-            angular_velocity), law, speed_threshold)
+        motion = position, orientation, linear_velocity, angular_velocity
+        return _impact_of_one(bodies, contacts, motion, law, speed_threshold)
+    a, b = contacts.body_a, contacts.body_b
     rows = contact_rows(bodies, contacts, position, orientation)
     response = rows.response()
     velocity = rows.motion(linear_velocity, angular_velocity)
@@ -103,29 +104,39 @@ def resolve_impact(bodies, contacts, position, orientation, linear_velocity, ang
     friction = mixed_friction(bodies.friction[a], bodies.friction[b])
 
     def attempt(share):
-        impulse = IMPACT_LAWS[law].many(response, velocity, friction, share * restitution)
+        impulse = IMPACT_LAWS[law].many(response, velocity, friction, share * restitution,
+                                        rows.scaled)
         return impulse, laws.energy_change(response, velocity, impulse)
 
     impulse = laws.dissipating(attempt)
     return Impact(rows.touched, *rows.change(impulse), rows.world(impulse), speed)
 
 
-def resolve_one(contact, law, speed_threshold):
-    """Return the impulse (3,) of a `OneContact` in contact axes; as `resolve_impact`."""
-    speed = -contact.velocity[0]
-    restitution = contact.restitution(speed) if speed > speed_threshold else 0.0
+def resolve_one(response, velocity, friction, surfaces, law, speed_threshold):
+    """
+    Return the impulse (3,) of one contact in contact axes, in plain floats.
+
+    Arguments as for the laws of one contact; `surfaces` are `friction.surfaces_of` its bodies, the
+    others as for `resolve_impact`.
+    """
+    speed = -velocity[0]
+    restitution = restitution_of_one(surfaces, speed) if speed > speed_threshold else 0.0
     one = IMPACT_LAWS[law].one
 
     def attempt(share):
-        impulse = one(contact.response, contact.velocity, contact.friction, share * restitution)
-        return impulse, laws.energy_change_of_one(contact.response, contact.velocity, impulse)
+        impulse = one(response, velocity, friction, share * restitution)
+        return impulse, laws.energy_change_of_one(response, velocity, impulse)
 
     return laws.dissipating(attempt)
 
 
-def _impact_of_one(contact, law, speed_threshold):
-    """Return the `Impact` of a `OneContact`."""
-    impulse = resolve_one(contact, law, speed_threshold)
+def _impact_of_one(bodies, contacts, motion, law, speed_threshold):
+    """Return the `Impact` of a single contact."""
+    a, b = contacts.body_a.item(), contacts.body_b.item()
+    contact = one_contact(bodies, a, b, contacts.point[:, 0].tolist(),
+                          contacts.normal[:, 0].tolist(), *motion)
+    impulse = resolve_one(contact.response, contact.velocity, contact.friction,
+                          surfaces_of(bodies, a, b), law, speed_threshold)
     touched, linear, angular = zip(*sorted(contact.changes(impulse)))
     return Impact(np.array(touched), np.array(linear).T, np.array(angular).T,
                   np.array(contact.world(impulse))[:, None], np.array((-contact.velocity[0],)))

@@ -27,6 +27,7 @@ law can create energy, and Poisson's did not in any throw tried.
 import numpy as np
 
 from rigid_sim_ros.engine.solvers import ContactProblem, solve
+from rigid_sim_ros.engine.solvers.canonical import ACCURACY
 from rigid_sim_ros.engine.solvers.single import solve_one
 
 _BISECTIONS = 40
@@ -51,18 +52,18 @@ def poisson_one(response, velocity, friction, restitution):
     return solve_one(response, velocity, friction, (1.0 + restitution) * impulse[0])
 
 
-def newton(response, velocity, friction, restitution):
+def newton(response, velocity, friction, restitution, factor=None):
     """Return the impulses (3k,) of k contacts in contact axes; e is (k,)."""
     count = len(friction)
     free = velocity.copy()
     free[:count] += restitution * np.minimum(velocity[:count], 0.0)
-    return solve(_problem(response, free, friction, np.zeros(count))).force
+    return _without_floor(factor, response, free, friction)
 
 
-def poisson(response, velocity, friction, restitution):
+def poisson(response, velocity, friction, restitution, factor=None):
     """Return the impulses (3k,) of k contacts in contact axes; e is (k,)."""
     count = len(friction)
-    impulse = solve(_problem(response, velocity, friction, np.zeros(count))).force
+    impulse = _without_floor(factor, response, velocity, friction)
     if not restitution.any():
         return impulse
     rebound = 1 + restitution
@@ -107,6 +108,36 @@ def dissipating(attempt):
         else:
             high = share
     return impulse
+
+
+def _without_floor(factor, response, free, friction):
+    """Return the impulses (3k,) that solve a problem without floor."""
+    impulse = sticking(factor, free, friction)
+    if impulse is None:
+        impulse = solve(_problem(response, free, friction, np.zeros(len(friction)))).force
+    return impulse
+
+
+def sticking(factor, free, friction):
+    """
+    Return the impulses (3k,) with which all contacts stick, or None if not all can.
+
+    The smallest ones: where there is a choice that is the canonical one, see `solvers.canonical`.
+    The response is factor @ factor.T, of more rows than columns.
+    """
+    if factor is None or factor.shape[0] <= factor.shape[1]:
+        return None
+    try:
+        inverse = np.linalg.inv(factor.T @ factor)
+    except np.linalg.LinAlgError:
+        return None
+    impulse = -(factor @ (inverse @ (inverse @ (free @ factor))))
+    left = free + factor @ (impulse @ factor)
+    normal, first, second = impulse.reshape(3, -1)
+    limit = friction * normal
+    sticks = ((normal > 0).all() and (first * first + second * second <= limit * limit).all()
+              and abs(left).max() <= ACCURACY * abs(free).max())
+    return impulse if sticks else None
 
 
 def _problem(response, free, friction, floor):
