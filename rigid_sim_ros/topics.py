@@ -256,7 +256,8 @@ COMMANDS = (
 
 JOURNAL = Command(
     '~/journal', 'std_msgs/msg/String', Quality(100),
-    'in recordings only: resets and parameters that commands depend on, a line of JSON each; '
+    'in recordings only: resets, bodies that come, go and are placed, and parameters that '
+    'commands depend on, a line of JSON each; '
     '`rigid_sim_ros.recording.journal` says what a recording must hold to be run again')
 """Written to recordings beside what is published and commanded; not on the network."""
 
