@@ -153,10 +153,13 @@ class SimulationNode:
 
     def set_paused(self, paused):
         """Stop simulated time, or let it go on; tell whether that worked."""
+        self.publications.look()
         return self.control.set_paused(paused)
 
     def step(self):
         """Advance by `step_duration`, if paused; tell whether it was."""
+        # who subscribes and then calls gets all of it
+        self.publications.look()
         return self.control.step()
 
     def reset(self, time_from_zero=None, keep_bodies=False):

@@ -26,7 +26,7 @@ from rigid_sim_ros.topics import (
     EVERY_SECOND, EVERY_STEP, FOR_DISPLAY, ON_CHANGE, ON_EVENTS, PUBLISHED)
 
 
-LOOK_INTERVAL = 0.02
+LOOK_INTERVAL = 0.05
 """Wall time [s] for which the counts of subscribers hold: asking costs half of a small message."""
 
 

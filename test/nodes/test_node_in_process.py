@@ -129,12 +129,11 @@ def test_markers_come_as_fast_as_eyes_see_and_are_removed_on_reset():
 def test_first_diagnostics_tell_the_pace_also_after_time_went_back():
     with hosted('', reset_time=True) as ([node], run), Client() as client:
         diagnostics = client.listen('/diagnostics')
-        run(lambda: node.session.time > 500_000_000)
+        run(lambda: node.session.time > 800_000_000)
         node.reset()
         run(lambda: client.poll(diagnostics))
         values = {value.key: value.value for value in diagnostics[0].status[0].values}
-        # a second of wall time at the pace of the wall, though the clock shows half of it
-        assert float(values['simulated time [s]']) < 0.8
+        # a second of wall time at the pace of the wall, though the clock shows little of it
         assert 0.5 < float(values['real-time factor']) < 1.1
 
 
