@@ -107,14 +107,15 @@ class History:
 
     def pieces(self):
         """Return the bytes to attach, as a list of parts; none if it was given up."""
-        if not self.complete:
-            return []
         head = json.dumps({'history': 1, 'begin_ns': self._begin_ns, 'topics': self._topics})
-        blocks = []
+        blocks = b''
         if self._blocks is not None:
-            self._blocks.seek(0)
-            blocks = [self._blocks.read()]
-        return [head.encode() + b'\n', *blocks, self._packed()]
+            try:
+                self._blocks.seek(0)
+                blocks = self._blocks.read()
+            except OSError:
+                self._give_up()
+        return [head.encode() + b'\n', blocks, self._packed()] if self.complete else []
 
     def _add(self, time_ns, *parts):
         self._last_ns = time_ns
@@ -133,12 +134,14 @@ class History:
             if self._blocks is None:
                 self._blocks = tempfile.TemporaryFile(prefix='rigid_sim_history_')
             self._blocks.write(block)
-            has_place = self._block_bytes <= self._largest
         except OSError:
-            has_place = False
-        if not has_place:
-            self.begin(self._last_ns)
-            self.complete = False
+            self._give_up()
+        if self._block_bytes > self._largest:
+            self._give_up()
+
+    def _give_up(self):
+        self.begin(self._last_ns)
+        self.complete = False
 
     def _packed(self):
         frame = self._compress(bytes(self._records))

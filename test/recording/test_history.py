@@ -15,6 +15,7 @@
 """The history that recordings begun in the middle of a run carry with them."""
 
 import os
+import tempfile
 
 import numpy as np
 import pytest
@@ -69,6 +70,24 @@ def test_it_is_given_up_when_it_is_too_long_until_the_next_beginning():
     assert (history.complete, history.pieces()) == (False, [])
     assert history.byte_count <= 2**17
     history.begin(0)
+    assert history.complete and history.pieces()
+
+
+@pytest.mark.parametrize('call', ['write', 'seek'])
+def test_it_is_given_up_when_there_is_no_place_for_it(monkeypatch, call):
+    def refuse(*arguments):
+        raise OSError(28, 'No space left on device')
+
+    class Full:
+        write = seek = read = staticmethod(lambda *arguments: None)
+
+    monkeypatch.setattr(Full, call, refuse)
+    monkeypatch.setattr(tempfile, 'TemporaryFile', lambda **options: Full())
+    history, _ = filled(5000)
+    assert history.pieces() == []
+    assert not history.complete
+    history.begin(0)
+    history.add_state(5)
     assert history.complete and history.pieces()
 
 
