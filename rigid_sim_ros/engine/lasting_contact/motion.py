@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
+from rigid_sim_ros.engine.lasting_contact.turning import turned
 
 
 @dataclass(frozen=True)
@@ -123,23 +124,26 @@ class FreeMotion:
         of contacts in addition; the bodies drift at the velocities of that.
         """
         position = struck.position + time * struck.linear
-        orientation = rotation.normalize(rotation.multiply(
-            rotation.from_rotation_vector(time * struck.angular), struck.orientation))
-        angular = self.carried(start, kicked, struck, orientation, time)
+        orientation, angular = self.turned(start, kicked, struck, time)
         return Motion(position, orientation, struck.linear + 0.5 * time * self.acceleration,
                       angular)
 
-    def carried(self, start, kicked, struck, orientation, time):
+    def turned(self, start, kicked, struck, time):
         """
-        Return the rates (3, n) at the end of a step of `time` [s]: the angular momentum's.
+        Return the attitudes (4, n) and rates (3, n) at the end of a step of `time` [s].
 
-        It is that of `start`, what contacts gave from `kicked` to `struck`, and the torques'.
+        The angular momentum is that of `start`, what contacts gave from `kicked` to `struck`, and
+        the torques'.
         """
         if self._plain:
-            return struck.angular
-        before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
+            turn = rotation.from_rotation_vector(time * struck.angular)
+            return (rotation.normalize(rotation.multiply(turn, start.orientation)),
+                    struck.angular)
         given = start.angular + struck.angular - kicked.angular
+        orientation = turned(start.orientation, given, self._inertia, self._inverse_inertia,
+                             self.torque, time)
+        before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
         momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
             before, given)) + time * self.torque
-        return rotation.transform(
+        return orientation, rotation.transform(
             after, self._inverse_inertia * rotation.transform_transposed(after, momentum))

@@ -15,7 +15,6 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
@@ -201,7 +200,5 @@ class PileStep:
         if self._island.resists_spin:
             linear, angular = self._resisted(linear, angular)
         struck = Motion(start.position, start.orientation, linear, angular)
-        turn = rotation.from_rotation_vector(duration * angular)
-        orientation = rotation.normalize(rotation.multiply(turn, start.orientation))
-        return Motion(start.position + duration * linear, orientation, linear,
-                      self._free.carried(start, self._kicked, struck, orientation, duration))
+        orientation, angular = self._free.turned(start, self._kicked, struck, duration)
+        return Motion(start.position + duration * linear, orientation, linear, angular)
