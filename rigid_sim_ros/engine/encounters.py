@@ -75,7 +75,7 @@ class Encounters:
         self._flying[indices] = self._solid[indices] = True
         self.active = self.active or len(indices) > 0
         if len(indices) * int(self._solid.sum()) > RENEWED_PAIRS:
-            self._renew(time)
+            self._renew(indices, time)
         else:
             self._replace(indices, *self._pairs_with(indices), time)
         if guarded is not None and guarded.size:
@@ -101,7 +101,7 @@ class Encounters:
         while self._next <= end:
             time = self._next
             if time == self._horizon:
-                self._renew(time)
+                self._renew(self.body_a[:0], time)
                 continue
             first = (self.due == time).nonzero()[0]
             if self.found[first].all():
@@ -187,14 +187,24 @@ class Encounters:
         a, b = a[keep], b[keep]
         return np.minimum(a, b), np.maximum(a, b)
 
-    def _renew(self, time):
-        """Start the list again with all pairs that may meet before a new horizon."""
-        self._keep(self._without(np.flatnonzero(self._flying)))
+    def _renew(self, changed, time):
+        """
+        List all pairs that may meet before a new horizon.
+
+        What is known of pairs stays known, but for those of bodies `changed` (k,).
+        """
+        kept = self._without(changed)
+        # of what never meets again, only those whose spheres still overlap would be listed anew
+        never = (kept & (self.due > FOREVER)).nonzero()[0]
+        kept[never] = self._bounds(self.body_a[never], self.body_b[never], time) <= time
+        self._keep(kept)
         center, velocity = self._flights.translation(time)
         a, b, horizon = swept_pairs(self._world.bodies, self._flying, self._solid, center,
                                     velocity, self._flights.acceleration)
         self._horizon = time + horizon
-        self._replace(a[:0], a, b, time)
+        count = len(self._solid)
+        new = ~np.isin(a * count + b, self.body_a * count + self.body_b)
+        self._replace(changed[:0], a[new], b[new], time)
 
     def _replace(self, indices, a, b, time):
         """List pairs in the place of those of bodies (k,), but none due after the horizon."""

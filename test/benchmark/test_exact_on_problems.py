@@ -18,6 +18,7 @@ import pytest
 from rigid_sim_ros.benchmark.engines import ENGINES
 from rigid_sim_ros.benchmark.problems import PROBLEMS
 from rigid_sim_ros.benchmark.trajectories import fault, record
+from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.scene import load_scene
 
 # the bounds are the project's promises, not what is measured, which is mostly a hundredth of it
@@ -52,3 +53,12 @@ def test_errors(name, bounds):
     assert {measure: value for measure, value in measured.items()
             if value > bounds.get(measure, value)} == {}
     assert set(bounds) <= set(measured)
+
+
+def test_pairs_that_were_searched_are_not_searched_again():
+    """A hundred pairs: before their impact and after it, though the list of pairs is renewed."""
+    simulation = Simulation(load_scene(PROBLEMS['vertex_face_100'].scene()))
+    for _ in range(10):
+        simulation.advance(0.01)
+    assert simulation.work.impacts == 100
+    assert simulation.work.touch_searches == 200

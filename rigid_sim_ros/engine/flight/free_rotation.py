@@ -111,7 +111,7 @@ class FreeRotations:
         for form, places, columns in self._selected(indices):
             if len(places) <= FEW_SAMPLES:
                 for place, column in zip(places.tolist(), columns.T.tolist()):
-                    out[:, place] = _motion(form, column, time)[0]
+                    out[:, place] = _motion(form, _split(column), time)[0]
             else:
                 pairs = _unit_pairs(*form.pairs(columns[MOTION], time - columns[START]))
                 out[:, places] = _orientations(columns[WORLD], pairs)
@@ -121,7 +121,7 @@ class FreeRotations:
         for form, places, columns in self._selected(indices):
             if len(places) <= FEW_SAMPLES:
                 for place, column in zip(places.tolist(), columns.T.tolist()):
-                    out[:, place] = _motion(form, column, time)[1]
+                    out[:, place] = _motion(form, _split(column), time)[1]
             else:
                 out[:, places] = _motions(form, columns, time)[1]
 
@@ -139,7 +139,7 @@ class FreeRotations:
     def trajectory(self, body):
         """Return quaternion and world rate of one body as a function of time."""
         form, table = self._form_of(body)
-        return partial(_motion, form, table.column(body))
+        return partial(_motion, form, _split(table.column(body)))
 
     def bounds_of_one(self, body, start, end):
         """Return upper bounds of |w| and |dw/dt| of one body."""
@@ -220,19 +220,25 @@ def _orientations(matrices, pairs):
     return to_unit_length((matrices.reshape(4, 4, -1) * pairs).sum(axis=1))
 
 
-def _motion(form, column, time):
-    """Return quaternion and world rate of one body in plain floats."""
-    elapsed = time - column[START]
-    w, z, x, y = _unit_pair(*form.pair(column[MOTION], elapsed))
-    a, b, c, d, e, f, g, h, i, j, k, m, n, o, p, q = column[WORLD]
+def _split(column):
+    """Return start, rate, world and body matrices and the form's constants of one body."""
+    return column[START], tuple(column[RATE]), column[WORLD], column[BODY_RATE], column[MOTION]
+
+
+def _motion(form, parts, time):
+    """Return quaternion and world rate of one body in plain floats, `parts` by `_split`."""
+    start, rate, world, body_rate, constants = parts
+    elapsed = time - start
+    w, z, x, y = _unit_pair(*form.pair(constants, elapsed))
+    a, b, c, d, e, f, g, h, i, j, k, m, n, o, p, q = world
     quaternion = to_unit_length((
         a * w + b * z + c * x + d * y, e * w + f * z + g * x + h * y,
         i * w + j * z + k * x + m * y, n * w + o * z + p * x + q * y))
     # at the start, as given: momentum to rate loses digits in very thin bodies
     if elapsed == 0:
-        return quaternion, tuple(column[RATE])
+        return quaternion, rate
     first, second, third = _momentum(w, z, x, y)
-    a, b, c, d, e, f, g, h, i = column[BODY_RATE]
+    a, b, c, d, e, f, g, h, i = body_rate
     return quaternion, to_world(quaternion, (
         a * first + b * second + c * third, d * first + e * second + f * third,
         g * first + h * second + i * third))

@@ -70,8 +70,11 @@ def first_end(heights, speeds, pulls):
     lowest = heights.index(min(heights))
     first, falling = _end(heights[lowest], speeds[lowest], pulls[lowest]), speeds[lowest] <= 0
     for z, u, pull in zip(heights, speeds, pulls):
-        # concave: still above zero at the first end so far, so it ends later
-        if pull > 0 and z + first * (u - 0.5 * pull * first) > 0:
+        if pull > 0:
+            # concave: still above zero at the first end so far, so it ends later
+            if z + first * (u - 0.5 * pull * first) > 0:
+                continue
+        elif u >= 0:
             continue
         ends = _end(z, u, pull)
         if ends < first:
