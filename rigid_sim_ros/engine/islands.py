@@ -191,7 +191,9 @@ class Islands:
         margin = skin if crowd else max(skin, SPARE_STEPS * motion)
         a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + margin)
         ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
-        a, b = _within(bodies, state.position, a[ours], b[ours], reach + 0.5 * margin)
+        a, b = a[ours], b[ours]
+        reach = _passed_on(bodies, state.position, a, b, reach)
+        a, b = _within(bodies, state.position, a, b, reach + 0.5 * margin)
         if crowd:
             return [self._island(members, a, b)], margin
         gap = separations(bodies, a, b, state.position, state.orientation) - reach[a] - reach[b]
@@ -233,6 +235,16 @@ def _within(bodies, position, body_a, body_b, reach):
     limit = reach[body_a] + reach[body_b]
     near = (rotation.dot(apart, apart) <= limit * limit) | (body_b >= bodies.body_count)
     return body_a[near], body_b[near]
+
+
+def _passed_on(bodies, position, body_a, body_b, reach):
+    """Return the reach (n,) [m] of bodies that those of pairs (p,) may hit, as they then have."""
+    a, b = _within(bodies, position, body_a, body_b, reach)
+    weak = bodies.inverse_mass
+    result = reach.copy()
+    for one, other in ((a, b), (b, a)):
+        np.maximum.at(result, one, reach[other] * weak[one] / (weak[one] + weak[other]))
+    return result
 
 
 def _with_the_many(labels, members):
