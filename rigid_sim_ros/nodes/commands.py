@@ -37,6 +37,18 @@ Largest component of a command, in SI units. Far beyond anything a rigid body do
 below the end of the number range that products of a few such numbers stay finite.
 """
 
+LARGEST_VELOCITY = 1e6
+"""
+The same of velocities [m/s], [rad/s]: among bodies that spin faster a search for the next touch
+looks at turn after turn, and does not end in any time.
+"""
+
+
+def largest(quantity):
+    """Return the largest component allowed of a quantity, by the name of its field."""
+    return LARGEST_VELOCITY if quantity.endswith('velocity') else LARGEST_VALUE
+
+
 FARTHEST_AHEAD = 86400 * NANOSECONDS
 """How far ahead of simulated time a command may be stamped [ns]. More is wall time by mistake."""
 
@@ -197,19 +209,20 @@ class Commands:
                 'command refused: it has neither wrenches nor velocities'))
         self._rows_of(command.names)
         for quantity, values in given.items():
-            self._check_values(quantity.replace('_', ' '), command.names, values)
+            self._check_values(quantity, command.names, values)
 
-    def _check_values(self, what, names, values):
-        if np.abs(values).max() <= LARGEST_VALUE:
+    def _check_values(self, quantity, names, values):
+        limit = largest(quantity)
+        if np.abs(values).max() <= limit:
             return
         # NaN compares false above, so it ends here too
         finite = np.isfinite(values).all()
-        bad = ~(np.abs(values) <= LARGEST_VALUE)
+        bad = ~(np.abs(values) <= limit)
         row = int(np.argmax(bad.any(axis=1)))
-        allowed = 'finite numbers' if not finite else f'at most {LARGEST_VALUE:g} either way'
+        allowed = 'finite numbers' if not finite else f'at most {limit:g} either way'
         raise Refused('not finite' if not finite else 'too large', lambda: (
-            f'command to {shown(names[row])} refused: {what} is {values[row].tolist()}; '
-            f'allowed: {allowed}'))
+            f'command to {shown(names[row])} refused: {quantity.replace("_", " ")} is '
+            f'{values[row].tolist()}; allowed: {allowed}'))
 
     def _rows_of(self, names):
         """Return the rows (k,) of names, or raise `Refused`; the last names are remembered."""

@@ -19,7 +19,7 @@ import re
 
 from rigid_sim_ros.engine import CommandError
 from rigid_sim_ros.engine.commands import unit_quaternion, vector
-from rigid_sim_ros.nodes.commands import LARGEST_VALUE
+from rigid_sim_ros.nodes.commands import largest
 from rigid_sim_ros.nodes.counted_warnings import near_names, shown
 from rigid_sim_ros.scene import load_scene, SceneError, values
 from rigid_sim_ros.scene.overlap import deepest_overlap
@@ -176,7 +176,7 @@ def _checked(changes):
     except CommandError as error:
         raise EntityError(str(error)) from error
     for field, numbers in checked.items():
-        if max(map(abs, numbers)) > LARGEST_VALUE:
-            raise EntityError(f'{field} is {list(numbers)}; allowed: at most {LARGEST_VALUE:g} '
+        if max(map(abs, numbers)) > largest(field):
+            raise EntityError(f'{field} is {list(numbers)}; allowed: at most {largest(field):g} '
                               'either way')
     return checked
