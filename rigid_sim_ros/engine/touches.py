@@ -134,14 +134,7 @@ class Touches:
         self._world.work.narrow_phases += len(body_a)
         contacts = find_contacts(bodies, body_a, body_b, self._position, self._orientation,
                                  margin * size)
-        stays = np.zeros(bodies.count, dtype=bool)
-        lone = lone_contacts(bodies, contacts)
-        if lone.all():
-            self._apply_alone(time, contacts, stays)
-        else:
-            self._apply_alone(time, contacts.select(lone), stays)
-            for group in contact_groups(bodies, contacts.select(~lone)):
-                self._apply(time, group, stays)
+        stays = self._apply_all(time, contacts)
         return Touch(*(values.take(indices, axis=-1) for values in (
             self._position, self._orientation, self._linear, self._angular, stays)))
 
@@ -156,6 +149,21 @@ class Touches:
             self._flights.poses(time, indices))
         self._linear[:, indices], self._angular[:, indices] = (
             self._flights.velocities(time, indices))
+
+    def _apply_all(self, time, contacts):
+        """Apply the impulses of all contacts; return which of all bodies (n,) stay together."""
+        bodies = self._world.bodies
+        stays = np.zeros(bodies.count, dtype=bool)
+        lone = lone_contacts(bodies, contacts)
+        if lone.all():
+            self._apply_alone(time, contacts, stays)
+            return stays
+        if lone.any():
+            self._apply_alone(time, contacts.select(lone), stays)
+            contacts = contacts.select(~lone)
+        for group in contact_groups(bodies, contacts):
+            self._apply(time, group, stays)
+        return stays
 
     def _apply_alone(self, time, contacts, stays):
         """Apply the impulses of contacts that share no body, and mark those that stay together."""
