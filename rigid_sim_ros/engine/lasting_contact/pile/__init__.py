@@ -33,7 +33,8 @@ from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_
 from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members, undisturbed
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
-from rigid_sim_ros.engine.lasting_contact.pile.pile_step import NEVER, OVERLAP, PileStep
+from rigid_sim_ros.engine.lasting_contact.pile.pile_step import (
+    HIT_ROUNDS, NEVER, OVERLAP, PileStep)
 from rigid_sim_ros.engine.lasting_contact.stepping import parts_of
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
 
@@ -163,9 +164,13 @@ class Pile:
         return motion
 
     def _found(self, motion, scales, way):
-        """Return what is `Found` near a `Motion` whose pairs go a way (p,) [m] in a step."""
+        """
+        Return what is `Found` near a `Motion` whose pairs go a way (p,) [m] in a step at most.
+
+        Half of it is enough, as what it is that closes by more is found late.
+        """
         return Found.at(self._island.find_contacts(
-            motion, KEPT_WAY * scales.length + 2 * way), motion)
+            motion, KEPT_WAY * scales.length + 0.5 * way), motion)
 
     def _remembered(self, contacts, reach):
         """Return impulses (3, k) in contact axes to start from."""
@@ -202,18 +207,16 @@ class Pile:
         if self.contacts is None:
             motion = self._renew(motion, free, scales, duration, 0.0)
         step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces)
+        quick = (duration * self._island.closing(motion) > FAST * scales.length).any()
         for attempt in range(TRIES):
-            step.attempt()
+            step.attempt(1 if quick else HIT_ROUNDS)
             way = duration * self._island.closing(step.end)
-            self._ahead = None
-            if not (way > FAST * scales.length).any():
+            late = self._late(step, scales, way, duration)
+            if late is not None and attempt < TRIES - 1:
+                step.learn(late)
+            elif not (quick and step.sinks):
                 break
-            self._ahead = step.end, self._found(step.end, scales, way)
-            late = run_into(step.contacts.found, step.contacts.gap, self._ahead[1], step.end,
-                            duration, OVERLAP * scales.length)
-            if late is None or attempt == TRIES - 1:
-                break
-            step.learn(late)
+            quick = False
         self._way += way
         self.contacts, self._forces = step.contacts, step.forces
         hit, impulse = step.finish()
@@ -223,6 +226,16 @@ class Pile:
         if (self._way > KEPT_WAY * scales.length).any():
             end = self._renew(end, free, scales, duration, step.lost)
         return end, closed
+
+    def _late(self, step, scales, way, duration):
+        """Return what the end of a step overlaps with, or None; pairs went a way (p,) [m]."""
+        self._ahead = None
+        if not (way > FAST * scales.length).any():
+            return None
+        ahead = self._found(step.end, scales, way)
+        self._ahead = step.end, ahead
+        return run_into(step.contacts.found, step.contacts.gap, ahead, step.end, duration,
+                        OVERLAP * scales.length)
 
     def _note(self, which, force, speed, time):
         """Note rebounds (k,) bool as impacts, at the end of the step they are in."""

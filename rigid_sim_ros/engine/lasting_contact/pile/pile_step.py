@@ -32,7 +32,7 @@ HIT_ITERATIONS = 25
 """Of the solver in a step in which something hits, and again as long as something sinks."""
 
 HIT_ROUNDS = 4
-"""So many times at most."""
+"""So many times at most; once where it is only to be seen what else is run into."""
 
 OVERLAP = 5e-4
 """Of the length scale: sinking in by more is worth more work."""
@@ -79,14 +79,16 @@ class PileStep:
         """The `Motion` at the end; which contacts hit (k,) bool, and the speeds [m/s] before."""
         self.lost = 0.0
         """Energy [J] lost."""
+        self.sinks = False
+        """Whether something hits and still gets deeper, as not enough rounds were solved."""
 
     @property
     def closed(self):
         """Return which contacts (k,) bool press."""
         return self.contacts.forces(self.forces)[0] > _PRESSED
 
-    def attempt(self):
-        """Solve for the forces and move to the `end`."""
+    def attempt(self, rounds=HIT_ROUNDS):
+        """Solve for the forces, in so many rounds at most where something hits; move to `end`."""
         contacts, duration = self.contacts, self._duration
         rows = contacts.rows
         before, kicked = contacts.scaled(self._start), contacts.scaled(self._kicked)
@@ -99,9 +101,10 @@ class PileStep:
         tolerance, iterations = ACCURACY * self._scales.acceleration * duration, ITERATIONS
         if self.hits.any():
             tolerance, iterations = HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS
-        for _ in range(HIT_ROUNDS):
+        for _ in range(rounds):
             self.forces, change = self._solved(kicked, asked, self.forces, tolerance, iterations)
-            if not self.hits.any() or not self._sinks(kicked + change):
+            self.sinks = bool(self.hits.any()) and self._sinks(kicked + change)
+            if not self.sinks:
                 break
         part, self.lost = kept_part(before, kicked - before, change)
         self.end = self._drifted(kicked + part * change)
