@@ -115,12 +115,14 @@ ROWS = (
     Row('slippery heap', lambda: scenes.heap((2, 2, 2), friction=0.0), 1, 5e-3, rests=False,
         **FEW),
     Row('heap of 10', lambda: scenes.heap((2, 1, 5)), 8, 1.5e-3, steps=(1 / 240,), **FEW),
-    Row('heap of 100', lambda: scenes.heap((5, 5, 4)), 8, 5e-3, steps=(1 / 240,), limit=180),
+    Row('heap of 100', lambda: scenes.heap((5, 5, 4)), 8, 5e-3, steps=(1 / 240,), limit=180,
+        **FEW),
     Row('pile of 10', lambda: scenes.pile((2, 1, 5)), 8, 1.5e-3, steps=(1 / 240, 1 / 1000),
         quick=(1 / 240,), **FEW),
     Row('pile of 100', lambda: scenes.pile((5, 5, 4)), 8, 5e-3, steps=(1 / 60, 1 / 240, 1 / 1000),
-        limit=120),
-    Row('pile of 1000', lambda: scenes.pile((10, 10, 10)), 8, 5e-2, steps=(1 / 240,), limit=600),
+        limit=120, **FEW),
+    Row('pile of 1000', lambda: scenes.pile((10, 10, 10)), 8, 5e-2, steps=(1 / 240,), limit=600,
+        **FEW),
 )
 
 
