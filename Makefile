@@ -48,7 +48,7 @@ $(READY): setup.py setup.cfg pyproject.toml
 		$(SUPPORTED) is needed; give another: make PYTHON=python3.12))
 	$(if $(shell $(PYTHON) -c 'import ensurepip, venv; print(1)' 2>/dev/null),,$(error \
 		$(PYTHON) has no venv; install it: sudo apt install python3-venv))
-	@echo 'Setting up $(VENV), once, which takes about a minute'
+	@echo 'Setting up $(VENV), once, which takes one minute or some'
 	@rm -rf $(VENV)
 ifdef ROS
 	@$(PYTHON) -m venv --system-site-packages $(VENV)

@@ -20,6 +20,10 @@ from math import inf
 import numpy as np
 
 
+LARGEST = 1e30
+"""Largest number in a command, in SI units, as in a scene: squares and products stay finite."""
+
+
 class CommandError(ValueError):
     """A command that cannot be carried out; nothing was changed. The text is one line."""
 
@@ -93,4 +97,6 @@ def _checked(what, value, shape):
         raise CommandError(f'{what} has the shape {array.shape}; allowed: {shape}')
     if not np.isfinite(array).all():
         raise CommandError(f'{what} is {value!r:.80}; allowed: finite numbers')
+    if not (np.abs(array) <= LARGEST).all():
+        raise CommandError(f'{what} is {value!r:.80}; allowed: at most {LARGEST:g} either way')
     return array

@@ -60,9 +60,9 @@ class EventLog:
         return len(self._rows)
 
     @property
-    def met(self):
-        """Whether bodies came together in any of these events."""
-        return any(row[3] != END for row in self._rows)
+    def struck(self):
+        """Whether any of these events is an impact."""
+        return any(row[3] == IMPACT for row in self._rows)
 
     def append(self, time, a, b, kind, point, normal, impulse=(0.0, 0.0, 0.0), speed=0.0):
         """

@@ -16,6 +16,7 @@
 
 from dataclasses import fields, replace
 from math import inf
+from numbers import Real
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from rigid_sim_ros.engine.commands import (
     column_of_moving, CommandError, index_rows, unit_quaternion, vector, vector_rows)
 from rigid_sim_ros.engine.events import EventLog
 from rigid_sim_ros.engine.methods import METHODS
+from rigid_sim_ros.engine.model import Scene
 from rigid_sim_ros.engine.state import State, state_of
 from rigid_sim_ros.engine.work import Work
 from rigid_sim_ros.engine.world import World
@@ -51,6 +53,8 @@ class Simulation:
     """
 
     def __init__(self, scene, method='exact', max_step=1 / 240):
+        if not isinstance(scene, Scene):
+            raise TypeError(f'scene is {scene!r:.80}; allowed: a Scene, as load_scene returns')
         if method not in METHODS:
             raise ValueError(f'method is {method!r}; allowed: {", ".join(METHODS)}')
         if not 0 < max_step < inf:
@@ -82,13 +86,13 @@ class Simulation:
         """
         Advance by exactly `duration` [s], zero or more; `collisions` are then those of it.
 
-        If `until_collision`, not beyond the instant at which bodies first come together, their
-        impact included. Method 'exact' stops at that instant if one of them was in flight, and at
-        the end of the step (`max_step` at most) if they met in lasting contact; the others stop
-        at the end of their step.
+        If `until_collision`, not beyond the first impact, which is included; contact that begins
+        softly, or was there, is none. Method 'exact' stops at its instant if one of the bodies was
+        in flight, and at the end of the step (`max_step` at most) if both were in lasting contact;
+        the others stop at the end of their step.
         """
-        if not 0 <= duration < inf:
-            raise ValueError(f'duration is {duration!r} s; allowed: zero or a positive number')
+        if not (isinstance(duration, Real) and 0 <= duration < inf):
+            raise ValueError(f'duration is {duration!r} s; allowed: a finite number, 0 or more')
         if duration > 0:
             self._method.advance(float(duration), until_collision)
         self._collisions = self._events.take()

@@ -22,7 +22,7 @@ from math import ceil
 
 import numpy as np
 
-from rigid_sim_ros.engine.events import BEGIN, IMPACT
+from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.model import Scene
 from rigid_sim_ros.nodes.commands import Commands
 from rigid_sim_ros.nodes.pacing import NANOSECONDS, PublishGrid
@@ -201,7 +201,7 @@ class Session:
         if simulation.method != 'exact':
             # that one raises errors of its own, and its poses are not evaluated for nothing
             self._check_finite(time)
-        collided = until_collision and _touched(simulation.collisions)
+        collided = until_collision and IMPACT in simulation.collisions['kind']
         if collided:
             time = min(time, self._origin + ceil(simulation.time * NANOSECONDS))
         self.advanced += time - self._time
@@ -223,8 +223,3 @@ class Session:
 
 def _line_of_added(body):
     return encode_add(dump_scene(Scene(bodies=(body,))))
-
-
-def _touched(collisions):
-    """Tell whether two bodies came together in these events."""
-    return bool(np.isin(collisions['kind'], (IMPACT, BEGIN)).any())

@@ -22,7 +22,7 @@ import numpy as np
 from rigid_sim_ros import recording
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.engine.bodies import ordered
-from rigid_sim_ros.engine.events import END
+from rigid_sim_ros.engine.events import END, IMPACT
 from rigid_sim_ros.scene import load_scene
 from rigid_sim_ros.view.errors import ViewError
 
@@ -112,9 +112,10 @@ class SimulatedMotion(Motion):
         simulation = self._simulation
         simulation.reset()
         while simulation.time < SEARCH_LIMIT:
-            simulation.advance(SEARCH_STEP)
-            if len(simulation.collisions):
-                return float(simulation.collisions['time'][0])
+            simulation.advance(SEARCH_STEP, until_collision=True)
+            impacts = _impacts(simulation.collisions)
+            if len(impacts):
+                return float(impacts['time'][0])
         raise ViewError(f'nothing collides within {SEARCH_LIMIT:g} s')
 
 
@@ -156,9 +157,15 @@ class RecordedMotion(Motion):
 
     def first_collision(self):
         """Look the first collision up."""
-        if not len(self._collisions):
+        impacts = _impacts(self._collisions)
+        if not len(impacts):
             raise ViewError('the recording holds no collision')
-        return float(self._collisions['time'].min())
+        return float(impacts['time'].min())
+
+
+def _impacts(collisions):
+    """Return those of collisions that are impacts: neither begin nor end of lasting contact."""
+    return collisions[collisions['kind'] == IMPACT]
 
 
 def open_motion(source):

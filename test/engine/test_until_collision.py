@@ -97,6 +97,17 @@ def test_it_stops_at_the_instant_while_others_are_in_lasting_contact():
     assert simulation.linear_velocity[0, 0] == pytest.approx(3.0 - mixed * 9.81 * fall, rel=1e-6)
 
 
+def test_what_touches_at_the_start_does_not_collide():
+    """A tower that stands, and a ball that falls beside it."""
+    shape = Cube(0.2)
+    tower = [Body(f'cube_{level}', shape, 1.0, shape.inertia(1.0),
+                  position=(5.0, 0.0, 0.1 + 0.2 * level)) for level in range(3)]
+    simulation = Simulation(Scene(bodies=(ball('ball', 0.0, 0.0, z=1.1), *tower),
+                                  planes=(GROUND,)))
+    simulation.advance(1.0, until_collision=True)
+    assert simulation.time == pytest.approx(np.sqrt(2 / 9.81), abs=1e-12)
+
+
 def test_the_end_of_a_contact_is_no_collision():
     simulation = Simulation(Scene(bodies=(ball('a', 0.0, 0.0, z=RADIUS),), planes=(GROUND,)))
     simulation.advance(0.1)

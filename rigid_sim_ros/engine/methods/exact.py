@@ -78,7 +78,7 @@ class Exact:
             else:
                 self.time = self._fly(end, until_collision)
             self._state = None
-            if until_collision and self._world.events.met:
+            if until_collision and self._world.events.struck:
                 return
 
     def _step_islands(self, end, until_collision):
@@ -109,7 +109,7 @@ class Exact:
         Or to the first at which bodies come together, if no more than that is asked for.
         """
         while (touch := self._encounters.next_touch(end)) is not None:
-            if self._touch(*touch) or until_collision and self._world.events.met:
+            if self._touch(*touch) or until_collision and self._world.events.struck:
                 return touch[0]
         return end
 

@@ -43,7 +43,7 @@ class Stepping:
         for number in range(1, count + 1):
             self.time = start + duration * (number / count)
             self.step(dt)
-            if until_collision and self._world.events.met:
+            if until_collision and self._world.events.struck:
                 return
 
     def set_motion(self, indices, **values):
