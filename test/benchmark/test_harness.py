@@ -130,7 +130,7 @@ def test_worker_times(worker):
 
 
 def test_worker_outlives_an_exception_a_crash_and_a_time_out(worker):
-    with pytest.raises(RunFailed, match='AttributeError'):
+    with pytest.raises(RunFailed, match='TypeError: scene is None'):
         worker.ask(task(scene=None))
     worker.ask(task())
     worker._process.kill()

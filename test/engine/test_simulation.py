@@ -177,6 +177,7 @@ def test_commands_for_all_bodies_at_once():
     (lambda s: s.apply_wrench('cube_1', force=(0, 0)), r'force has the shape \(2,\)'),
     (lambda s: s.apply_wrench('cube_1', force='fast'), "force is 'fast'; allowed: numbers"),
     (lambda s: s.set_velocity('cube_1', linear=(float('nan'),) * 3), 'linear velocity .* finite'),
+    (lambda s: s.set_velocity('cube_1', linear=(0, 1e31, 0)), r'linear velocity .* at most 1e\+30'),
     (lambda s: s.set_pose('cube_1', orientation=(0, 0, 0, 0)), 'orientation .* not zero'),
     (lambda s: s.apply_wrenches(np.zeros((2, 3)), np.zeros((1, 3))), r'forces .*\(1, 3\)'),
     (lambda s: s.set_velocities(np.zeros((1, 3)), np.full((1, 3), np.inf)), 'angular .* finite'),
@@ -206,7 +207,13 @@ def test_bad_options_are_refused(arguments, message):
         Simulation(Scene(), **arguments)
 
 
-@pytest.mark.parametrize('duration', [-1.0, float('nan'), float('inf')])
+def test_what_is_no_scene_is_refused():
+    """The likeliest slip: a scene's name in place of the scene."""
+    with pytest.raises(TypeError, match="scene is 'ten_cubes'; allowed: a Scene, as load_scene"):
+        Simulation('ten_cubes')
+
+
+@pytest.mark.parametrize('duration', [-1.0, float('nan'), float('inf'), '1'])
 def test_bad_durations_are_refused(duration):
     """Time goes forward by finite amounts."""
     with pytest.raises(ValueError, match='duration'):
