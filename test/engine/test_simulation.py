@@ -177,7 +177,7 @@ def test_commands_for_all_bodies_at_once():
     (lambda s: s.apply_wrench('cube_1', force=(0, 0)), r'force has the shape \(2,\)'),
     (lambda s: s.apply_wrench('cube_1', force='fast'), "force is 'fast'; allowed: numbers"),
     (lambda s: s.set_velocity('cube_1', linear=(float('nan'),) * 3), 'linear velocity .* finite'),
-    (lambda s: s.set_velocity('cube_1', linear=(0, 1e31, 0)), r'linear velocity .* at most 1e\+30'),
+    (lambda s: s.set_velocity('cube_1', linear=(0, 1e31, 0)), r'linear velocity .* 1e\+30'),
     (lambda s: s.set_pose('cube_1', orientation=(0, 0, 0, 0)), 'orientation .* not zero'),
     (lambda s: s.apply_wrenches(np.zeros((2, 3)), np.zeros((1, 3))), r'forces .*\(1, 3\)'),
     (lambda s: s.set_velocities(np.zeros((1, 3)), np.full((1, 3), np.inf)), 'angular .* finite'),
