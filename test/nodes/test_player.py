@@ -64,6 +64,7 @@ class Listener:
         self.node = rclpy.create_node('listener', context=self._context)
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
+        self._clients = {}
         root = Path(__file__).resolve().parents[2]
         self.process = subprocess.Popen(
             [sys.executable, '-m', 'rigid_sim_ros.nodes.player', str(bag), *arguments],
@@ -96,8 +97,13 @@ class Listener:
             assert time.monotonic() < deadline, 'waited in vain'
             self._executor.spin_once(timeout_sec=0.02)
 
+    def client(self, kind, name):
+        if name not in self._clients:
+            self._clients[name] = self.node.create_client(kind, '/rigid_sim_player/' + name)
+        return self._clients[name]
+
     def call(self, kind, name, **fields):
-        client = self.node.create_client(kind, '/rigid_sim_player/' + name)
+        client = self.client(kind, name)
         self.wait_for(client.service_is_ready)
         future = client.call_async(kind.Request(**fields))
         self.wait_for(future.done)
@@ -109,6 +115,11 @@ def test_it_plays_the_recorded_bytes_under_control(bag):
         received, clock = listener.listen(POSES), listener.listen('/clock')
         listener.wait_for(lambda: listener.node.count_publishers(POSES) == 1
                           and listener.node.count_publishers('/clock') == 1)
+        # a server that does not see yet who asks loses its answer
+        for kind, name in ((Trigger, 'step'), (SetBool, 'pause')):
+            listener.wait_for(listener.client(kind, name).service_is_ready)
+        seen = time.monotonic() + 0.3
+        listener.wait_for(lambda: time.monotonic() > seen)
         # the scene and the first poses have the same time: one step
         assert listener.call(Trigger, 'step').message == 'played 0.000000000 s'
         listener.wait_for(lambda: received)
