@@ -111,7 +111,7 @@ class Listener:
 
 
 def test_it_plays_the_recorded_bytes_under_control(bag):
-    with Listener(bag, '--paused', '--clock', '--rate', '5') as listener:
+    with Listener(bag, '--paused', '--clock', '--rate', '1') as listener:
         received, clock = listener.listen(POSES), listener.listen('/clock')
         listener.wait_for(lambda: listener.node.count_publishers(POSES) == 1
                           and listener.node.count_publishers('/clock') == 1)
