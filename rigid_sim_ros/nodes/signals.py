@@ -74,8 +74,11 @@ class StopRequest:
     def __enter__(self):
         self._breakable = True
 
-    def __exit__(self, *exception):
+    def __exit__(self, kind, error, traceback):
         self._breakable = False
+        if self.requested and isinstance(error, ImportError):
+            # what is raised while a C extension is loaded comes out of it as this
+            raise Interrupted from error
 
     def _request(self, number, frame):
         if not self.requested:

@@ -17,13 +17,15 @@
 import random
 import shlex
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
 
 pytest.importorskip('rclpy')
 
-from node_harness import Client, NodeProcess  # noqa: E402, I100
+from node_harness import Client, NodeProcess, ROOT  # noqa: E402, I100
 from rigid_sim_ros.nodes.parameters import PARAMETERS  # noqa: E402
 from rigid_sim_ros.nodes.running import run  # noqa: E402
 from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
@@ -68,6 +70,29 @@ def test_signal_while_it_starts(tmp_path):
             code = process.wait()
             assert code in (0, -signal.SIGTERM), process.error
             assert 'Traceback' not in process.error
+
+
+@pytest.mark.parametrize('module', ['simulation_node', 'ros2_command'])
+def test_signal_while_a_c_extension_is_loaded(module):
+    """What is raised meanwhile comes out as an ImportError; the end is as quiet all the same."""
+    code = f"""
+import os, signal, sys
+class Extension:
+    def find_spec(self, name, *_):
+        if name == 'rclpy':
+            try:
+                os.kill(os.getpid(), signal.SIGTERM)
+                sys.stdout.flush()
+            except BaseException as error:
+                raise ImportError('initialization failed') from error
+sys.meta_path.insert(0, Extension())
+sys.argv = ['x', 'topic', 'list']
+from rigid_sim_ros.nodes.{module} import main
+sys.exit(main())
+"""
+    ended = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                           timeout=30, cwd=ROOT)
+    assert (ended.returncode, ended.stderr) == (0, '')
 
 
 def test_start_tells_where_everything_is(tmp_path):
