@@ -108,7 +108,7 @@ class OnPlane:
         """Return an `Automaton` that begins in a `State`."""
         body = self._body(state)
         scales = Scales(self._radius, dot(body.acceleration, body.acceleration) ** 0.5)
-        return Automaton(body, self._numbers(state), None, scales, units.STICK * scales.speed,
+        return Automaton(body, self._numbers(state), scales, units.STICK * scales.speed,
                          self._surfaces, self._island.world.impact_law)
 
     def _columns(self, state):

@@ -56,9 +56,9 @@ class Automaton(ContactState):
     between them lies a polynomial.
     """
 
-    def __init__(self, body, state, closed, scales, stick, surfaces, law):
+    def __init__(self, body, state, scales, stick, surfaces, law):
         """See the class."""
-        super().__init__(body, state, closed, scales, stick, surfaces, law)
+        super().__init__(body, state, scales, stick, surfaces, law)
         self.steps = 0
         """Steps tried since it was last asked for anything."""
         self.now = self.state

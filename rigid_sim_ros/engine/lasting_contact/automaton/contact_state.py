@@ -69,8 +69,6 @@ class ContactState:
     ----------
     body : PlaneBody
     state : list of 13 floats, see `plane_body`
-    closed : set of int or None
-        The points in contact, or None to find out.
     scales : Scales
     stick : float [m/s]
         What rebounds slower stays.
@@ -81,7 +79,7 @@ class ContactState:
 
     """
 
-    def __init__(self, body, state, closed, scales, stick, surfaces, law):
+    def __init__(self, body, state, scales, stick, surfaces, law):
         """See the class."""
         self.body = body
         self.state = normalized(state)
@@ -96,9 +94,7 @@ class ContactState:
         low = [point for point in body.points if gaps[point] < TOUCH * scales.length]
         self._unarmed = set(low)
         self.closed = []
-        if closed is not None and closed.issubset(low):
-            self.closed = sorted(closed)
-        elif low:
+        if low:
             self.land()
 
     def take_hits(self):
