@@ -27,10 +27,10 @@ from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import Contact
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized, ORIENTATION
 
-TOLERANCE = 1e-8
+TOLERANCE = 1e-9
 """Of length, speed and angle: the error allowed in a step."""
 
-PIVOTING = 1e-3
+PIVOTING = 1e-2
 """How much of that where nothing slides: what tips about a point or an edge lets errors grow."""
 
 BALANCE = 1e-12
