@@ -14,7 +14,8 @@
 
 """A simulation: what users of the engine hold in their hands."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
+from itertools import accumulate, repeat
 from math import inf
 from numbers import Real
 
@@ -27,7 +28,7 @@ from rigid_sim_ros.engine.commands import (
 from rigid_sim_ros.engine.events import EventLog
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.engine.model import Scene
-from rigid_sim_ros.engine.state import State, state_of
+from rigid_sim_ros.engine.state import state_after, state_of
 from rigid_sim_ros.engine.work import Work
 from rigid_sim_ros.engine.world import World
 
@@ -59,9 +60,9 @@ class Simulation:
             raise ValueError(f'method is {method!r}; allowed: {", ".join(METHODS)}')
         if not 0 < max_step < inf:
             raise ValueError(f'max_step is {max_step!r} s; allowed: a positive number')
-        self._start = scene
-        self.method = method
-        self.max_step = float(max_step)
+        self.method, self.max_step = method, float(max_step)
+        self._start, self._duration = scene, 0.0
+        self._coming_times = self._times_if_repeated
         self.reset()
 
     def reset(self):
@@ -70,8 +71,7 @@ class Simulation:
 
         Bodies added since are gone, bodies removed are back.
         """
-        self._events = EventLog()
-        self._work = Work()
+        self._events, self._work = EventLog(), Work()
         self._collisions = self._events.take()
         self._build(self._start, state_of(self._start), 0.0)
 
@@ -94,8 +94,17 @@ class Simulation:
         if not (isinstance(duration, Real) and 0 <= duration < inf):
             raise ValueError(f'duration is {duration!r} s; allowed: a finite number, 0 or more')
         if duration > 0:
+            self._duration = duration
             self._method.advance(float(duration), until_collision)
         self._collisions = self._events.take()
+
+    def expect_times(self, coming_times):
+        """
+        Say at which times [s] states will be read: `coming_times(count)` gives the next `count`.
+
+        What is read is the same to the bit, but takes less time if the durations vary.
+        """
+        self._coming_times = coming_times
 
     # -- what can be read ----------------------------------------------------------------------
 
@@ -184,8 +193,7 @@ class Simulation:
         Raises `CommandError` if the name is not that of a moving body or a number is not finite.
         """
         index = column_of_moving(name, self._index, self.names)
-        force = vector('force', force)
-        torque = vector('torque', torque)
+        force, torque = vector('force', force), vector('torque', torque)
         self._method.set_wrench(np.array([index]), force[:, None], torque[:, None])
 
     def set_velocity(self, name, linear=None, angular=None):
@@ -265,24 +273,21 @@ class Simulation:
 
     def _build(self, scene, state, time):
         """Simulate this scene from this state and time [s] on."""
-        bodies = bodies_of(scene)
-        self._scene = scene
-        self._world = World(bodies, np.array(scene.gravity, dtype=float), scene.impact_law,
-                            self.max_step, self._events, self._work)
+        self._scene, bodies = scene, bodies_of(scene)
+        self._world = World(
+            bodies, np.array(scene.gravity, dtype=float), scene.impact_law, self.max_step,
+            self._events, self._work, lambda count: self._coming_times(count))
         self._method = METHODS[self.method](self._world, state, time)
         self._index = {name: index for index, name in enumerate(bodies.names)}
 
     def _change_scene(self, bodies):
         """Go on with other bodies; those that were there before go on as they are."""
-        before, index = self._method.state, self._index
         scene = replace(self._scene, bodies=bodies)
-        state = state_of(scene)
-        names = bodies_of(scene).names
-        kept = [column for column, name in enumerate(names) if name in index]
-        for field in fields(State):
-            getattr(state, field.name)[:, kept] = (
-                getattr(before, field.name)[:, [index[names[column]] for column in kept]])
-        self._build(scene, state, self.time)
+        self._build(scene, state_after(self._method.state, self._index, scene), self.time)
+
+    def _times_if_repeated(self, count):
+        """Return the next times [s] if the last duration is repeated, added up as it is."""
+        return list(accumulate(repeat(self._duration, count), initial=self.time))[1:]
 
     def _rows(self, columns):
         """Return the moving bodies' columns of an array (c, n) as rows that cannot be written."""

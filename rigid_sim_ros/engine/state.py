@@ -14,7 +14,7 @@
 
 """What changes while a scene is simulated, as arrays with one column a body."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -71,6 +71,22 @@ def state_of(scene):
         angular_velocity=columns([_moving(body, body.angular_velocity) for body in bodies], zero),
         force=columns([_moving(body, body.force) for body in bodies], zero),
         torque=columns([_moving(body, body.torque) for body in bodies], zero))
+
+
+def state_after(before, index, scene):
+    """
+    Return the state of a `model.Scene` that has come of another.
+
+    Bodies that were there go on from the `State` before, in which `index` gives the column of
+    each name; the others start as they are in the scene.
+    """
+    state = state_of(scene)
+    names = [body.name for body in ordered(scene)] + [plane.name for plane in scene.planes]
+    kept = [column for column, name in enumerate(names) if name in index]
+    for field in fields(State):
+        getattr(state, field.name)[:, kept] = (
+            getattr(before, field.name)[:, [index[names[column]] for column in kept]])
+    return state
 
 
 def _moving(body, vector):

@@ -15,6 +15,7 @@
 """What every stage of a simulation is given: the constants of its scene, and where to note."""
 
 from dataclasses import dataclass
+from typing import Callable
 
 import numpy as np
 
@@ -39,6 +40,8 @@ class World:
 
     events: EventLog
     work: Work
+    coming_times: Callable
+    """`coming_times(count)`: the next times [s] at which states are likely to be read."""
 
     def acceleration(self, force):
         """Return gravity plus force over mass (3, n) [m/s^2], zero where a body is fixed."""

@@ -114,6 +114,11 @@ class PublishGrid:
             self._before, self._number, self._next = time, number, self._at(number)
         return self._next
 
+    def following(self, time, count):
+        """Return the first `count` times on the grid later than `time` [ns]."""
+        first = self._number_after(time)
+        return [self._at(number) for number in range(first, first + count)]
+
     def _number_after(self, time):
         number = int((time - self._origin) * self._rate / NANOSECONDS)
         while self._at(number) > time:

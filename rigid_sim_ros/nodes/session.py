@@ -51,6 +51,7 @@ class Session:
 
     def __init__(self, simulation, publish_rate, publish, time=0):
         self.simulation = simulation
+        simulation.expect_times(self._coming_times)
         self.commands = Commands(simulation)
         self.paused = False
         self.pause_on_collision = False
@@ -207,6 +208,11 @@ class Session:
         self.advanced += time - self._time
         self._time = time
         return collided
+
+    def _coming_times(self, count):
+        """Return the simulation's own times [s] of the next `count` states to be published."""
+        return [(time - self._origin) / NANOSECONDS
+                for time in self._grid.following(self._time, count)]
 
     def _check_finite(self, time):
         """Raise FloatingPointError if a state has numbers that are none."""

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.methods.read_ahead import MOST_TIMES
 from rigid_sim_ros.nodes.commands import body_command
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.session import Session
@@ -159,3 +160,15 @@ def test_same_commands_at_the_same_times_give_the_same_bits():
     common = advanced.keys() & stepped.keys()
     assert len(common) >= 100
     assert all(advanced[time] == stepped[time] for time in common)
+
+
+def test_states_on_the_grid_are_evaluated_together():
+    run = Run(FREE, rate=240.0)
+    for _ in range(1000):
+        run.session.advance()
+    # each once, and a few that are yet to come: no time was expected in vain
+    assert 1000 <= run.simulation.work.pose_evaluations < 1000 + MOST_TIMES
+    run.session.reset(time_from_zero=False)
+    for _ in range(100):
+        run.session.advance()
+    assert run.simulation.work.pose_evaluations < 100 + MOST_TIMES

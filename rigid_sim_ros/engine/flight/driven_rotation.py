@@ -190,24 +190,6 @@ class DrivenRotations:
         return tuple(bound.item() for bound in self._law.bounds(
             constants, *(np.array([time]) for time in (start, end))))
 
-    def orientations_of_one(self, body, times):
-        """Return the quaternions of one body at times (K,), (4, K)."""
-        if not len(times):
-            return np.empty((4, 0))
-        chain = self._chains[body]
-        chain.reach(float(times.min()))
-        chain.reach(float(times.max()))
-        numbers = np.searchsorted(chain.times, times, side='right') - 1
-        first, last = int(numbers.min()), int(numbers.max())
-        if first == last:
-            return self._orientations_in_stride(chain, first, times)
-        result = np.empty((4, len(times)))
-        for number in range(first, last + 1):
-            chosen = numbers == number
-            if chosen.any():
-                result[:, chosen] = self._orientations_in_stride(chain, number, times[chosen])
-        return result
-
     # -- inside --------------------------------------------------------------------------------
 
     def _motion_of_one(self, body, time):
@@ -224,13 +206,6 @@ class DrivenRotations:
         # a stride that holds no time: it is made when it is first asked for
         column[END] = -np.inf
         self._table.put_one(body, column)
-
-    def _orientations_in_stride(self, chain, number, times):
-        """Return the quaternions of one body at times (K,) in one stride, (4, K)."""
-        unit, series = chain.stride(number)
-        fraction = (times - chain.times[number]) / unit
-        return np.array(self._law.orientations_of_one(
-            ARRAYS, chain.constants, series, fraction))
 
     def _current(self, time, indices):
         """

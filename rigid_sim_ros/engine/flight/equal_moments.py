@@ -22,7 +22,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.flight.fixed_axis import ROUNDING
 from rigid_sim_ros.engine.flight.series import (
-    coefficient_rows, frame_of, from_rows, into_frame, out_of_frame, polynomial, polynomials)
+    coefficient_rows, frame_of, from_rows, into_frame, out_of_frame, polynomial)
 
 ORDER = 48
 """Highest order of the series; most end earlier, by size."""
@@ -118,12 +118,6 @@ def orientations(functions, table, fraction):
 def rates(functions, table, time, fraction):
     """Return the world rates, (3, k), from `rows` (rows, k) at one time."""
     return table[RATE] + table[GROWTH] * (time - table[START])
-
-
-def orientations_of_one(functions, constants, series, fractions):
-    """Return the quaternions, (4, K), of one body at fractions (K,) of a unit."""
-    a, c = polynomials(series, fractions)
-    return out_of_frame(functions, constants[FRAME], a, c.conjugate())
 
 
 def motion_of_one(functions, constants, unit, series, time, fraction):

@@ -38,7 +38,7 @@ COSINE, SINE, HALF_RATE, QUARTER_GROWTH, RATE, GROWTH = (
 
 
 BLOCK = 4096
-"""Bodies evaluated at a time: what they need then stays in a core's own cache."""
+"""Poses evaluated at a time: what they need then stays in a core's own cache."""
 
 ROUNDING = 1 + 1e-12
 """What bounds are multiplied by, so that they also hold for what is computed."""
@@ -54,7 +54,7 @@ class FixedAxisRotations:
         self._grows = False
         self._all = tuple(self._table[rows] for rows in (
             COSINE, SINE, HALF_RATE, QUARTER_GROWTH))
-        self._scratch = np.empty((6, min(body_count, BLOCK)))
+        self._scratch = np.empty(6 * BLOCK)
 
     def begin_one(self, body, quaternion, rate, motion):
         """Start one rotation in plain floats; `motion` is what `staying_axis` returns."""
@@ -81,7 +81,11 @@ class FixedAxisRotations:
         self._table[RATE, bodies] = rate
 
     def orientations(self, elapsed, indices, out):
-        """Write the quaternions of bodies (k,), a slice or None for all, to `out` (4, k)."""
+        """
+        Write the quaternions of bodies (k,), a slice or None for all, to `out` (4, k).
+
+        Or of all at several times, elapsed (K, 1, n), to `out` (K, 4, n): the same to the bit.
+        """
         if indices is None:
             along, across, half_rate, quarter_growth = self._all
         else:
@@ -91,18 +95,23 @@ class FixedAxisRotations:
         half_angle = half_rate * elapsed
         if self._grows:
             half_angle += quarter_growth * elapsed * elapsed
-        count = len(half_angle)
-        if count < MANY:
+        if half_angle.shape[-1] < MANY:
             np.multiply(along, np.cos(half_angle), out=out)
             out += across * np.sin(half_angle)
             return
-        # bodies may be listed twice, so there may be more than there are
-        scratch = self._scratch if count <= self._scratch.shape[1] else np.empty((6, count))
-        waves, product = scratch[:2, :count], scratch[2:, :count]
+        waves, product = self._scratch_like(half_angle, out)
         cosine_and_sine(half_angle, waves)
         np.multiply(along, waves[0], out=out)
         np.multiply(across, waves[1], out=product)
         out += product
+
+    def _scratch_like(self, angle, out):
+        """Return room for the cosine and the sine of the angles, and one like `out`."""
+        waves, size = 2 * angle.size, 6 * angle.size
+        # bodies may be listed twice, so there may be more than there are
+        scratch = self._scratch if size <= 6 * BLOCK else np.empty(size)
+        return (scratch[:waves].reshape(2, *angle.shape),
+                scratch[waves:size].reshape(out.shape))
 
     def rates(self, elapsed, indices):
         """Return the rates [rad/s] of bodies (k,), None for all, in world axes, (3, k)."""
@@ -110,12 +119,6 @@ class FixedAxisRotations:
         if self._grows:
             return table[GROWTH] * elapsed + table[RATE]
         return table[RATE].copy()
-
-    def orientations_of_one(self, body, elapsed):
-        """Return the quaternions of one body so long (K,) after its start, (4, K)."""
-        column = self._table[:, body, None]
-        half_angle = elapsed * (column[HALF_RATE] + elapsed * column[QUARTER_GROWTH])
-        return column[COSINE] * np.cos(half_angle) + column[SINE] * np.sin(half_angle)
 
     def trajectory(self, body):
         """Return quaternion and rate of one body as a function of the time since its start."""

@@ -63,6 +63,13 @@ class Flights:
                         DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
                         DRIVEN_UNEQUAL: DrivenRotations(unequal_moments, count)}
         self._present = ()
+        self.changes = 0
+        """How often any motion was begun or held: what was evaluated before still holds if not."""
+
+    @property
+    def axes_stay(self):
+        """Whether all bodies turn about axes that stay, if at all."""
+        return not self._present
 
     @property
     def acceleration(self):
@@ -78,6 +85,7 @@ class Flights:
         accelerations of the centre of mass (3, k) [m/s^2] and torques (3, k) [N m]; the last
         two stay constant through the flight.
         """
+        self.changes += 1
         if len(indices) <= FEW:
             for index, *columns in zip(indices.tolist(), *(values.T.tolist() for values in (
                     position, orientation, linear_velocity, angular_velocity, acceleration,
@@ -108,6 +116,7 @@ class Flights:
 
         Arguments as for `begin`. What is asked for at other times than this is not their motion.
         """
+        self.changes += 1
         self._translations.begin(indices, time, position, linear_velocity, acceleration)
         self._fixed_axis.hold(indices, orientation, angular_velocity)
         if self._present:
@@ -132,6 +141,18 @@ class Flights:
             rotations.write_orientations(time, indices, orientation)
         return position, orientation
 
+    def poses_together(self, times):
+        """
+        Return positions (K, 3, n) [m] and unit quaternions (K, 4, n) of all n at times (K,) [s].
+
+        Only while `axes_stay`. To the last bit what `poses` returns for each of the times.
+        """
+        count = len(self._kind)
+        position = self._arrays.take(3 * len(times), count).reshape(-1, 3, count)
+        orientation = self._arrays.take(4 * len(times), count).reshape(-1, 4, count)
+        self._write_poses(times[:, None, None], None, position, orientation)
+        return position, orientation
+
     def velocities(self, time, indices=None):
         """Return linear and angular velocities, (3, k) each, [m/s] and [rad/s], as `poses`."""
         elapsed = self._elapsed(time, indices)
@@ -146,15 +167,6 @@ class Flights:
         position = np.empty((3, len(elapsed)))
         self._translations.positions(elapsed, indices, position)
         return position, self._translations.velocities(elapsed, indices)
-
-    def poses_at_times(self, index, times):
-        """Return positions (3, K) [m] and unit quaternions (4, K) of one body at times (K,)."""
-        position = self._translations.positions_of_one(index, times)
-        kind = self._kind.item(index)
-        if kind == FIXED_AXIS:
-            elapsed = times - self._translations.start[index]
-            return position, self._fixed_axis.orientations_of_one(index, elapsed)
-        return position, self._others[kind].orientations_of_one(index, times)
 
     def motion(self, index, time):
         """
@@ -220,16 +232,6 @@ class Flights:
             return self._others[kind].bounds_of_one(index, start, end)
         began = self._translations.start.item(index)
         return self._fixed_axis.bounds_of_one(index, start - began, end - began)
-
-    def vertex_acceleration_bound(self, indices, radius, start, end):
-        """
-        Return bounds, (k,) [m/s^2], of how points accelerate relative to the centre of mass.
-
-        Of all material points within `radius` (k,) [m] of it: |w x (w x r) + dw/dt x r| is at
-        most (|w|^2 + |dw/dt|) |r|.
-        """
-        rate, derivative = self._bounds(indices, start, end)
-        return (rate * rate + derivative) * radius
 
     # -- inside --------------------------------------------------------------------------------
 

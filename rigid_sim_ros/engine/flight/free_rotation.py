@@ -16,7 +16,7 @@
 Rotation without torque of bodies with unequal moments, in closed form.
 
 A body's constants fill one column of a table, so that many bodies are evaluated together, one
-body in plain floats, or one body at many times, by the same lines.
+body in plain floats, by the same lines.
 """
 
 from functools import partial
@@ -146,13 +146,6 @@ class FreeRotations:
         _, table = self._form_of(body)
         column = table.column(body)
         return column[RATE_BOUND], column[DERIVATIVE_BOUND]
-
-    def orientations_of_one(self, body, times):
-        """Return the quaternions of one body at times (K,), (4, K)."""
-        form, table = self._form_of(body)
-        column = np.array(table.column(body))[:, None]
-        pairs = _unit_pairs(*form.pairs(column[MOTION], times - column[START]))
-        return to_unit_length(column[WORLD].reshape(4, 4) @ pairs)
 
     # -- inside --------------------------------------------------------------------------------
 

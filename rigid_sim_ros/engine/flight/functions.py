@@ -42,13 +42,15 @@ ARRAYS = SimpleNamespace(
 
 def cosine_and_sine(angle, out):
     """
-    Write the cosines and sines of angles (k,) to `out`, (2, k); the angles are overwritten.
+    Write the cosines and sines of angles (..., k) to the two arrays of `out`, of that shape too.
+
+    The angles are overwritten.
 
     Many from t = tan(angle / 2) as 2 / (1 + t^2) - 1 and 2 t / (1 + t^2), both to two units of
     rounding: NumPy's tangent is ten times faster than its sine, measured.
     """
     cosine, sine = out
-    if len(angle) < MANY:
+    if angle.shape[-1] < MANY:
         np.cos(angle, out=cosine)
         np.sin(angle, out=sine)
         return

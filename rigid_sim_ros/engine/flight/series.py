@@ -63,15 +63,6 @@ def polynomial(coefficients, fraction):
     return value
 
 
-def polynomials(series, fractions):
-    """Return the values, (series, K), of series at fractions (K,)."""
-    coefficients = np.array(series)
-    powers = np.empty((coefficients.shape[1], len(fractions)))
-    powers[0] = 1.0
-    powers[1:] = fractions
-    return coefficients @ np.multiply.accumulate(powers, axis=0, out=powers)
-
-
 def coefficient_rows(series, order):
     """
     Return the coefficients of series as a list of real rows, all of order 0 first.

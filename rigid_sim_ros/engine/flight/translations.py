@@ -72,13 +72,6 @@ class Translations:
             return table[ACCELERATION] * elapsed + table[VELOCITY]
         return table[VELOCITY].copy()
 
-    def positions_of_one(self, body, times):
-        """Return the positions [m] of one body at times (K,), (3, K)."""
-        column = self._table[:, body, None]
-        elapsed = times - column[START]
-        velocity = column[HALF_ACCELERATION] * elapsed + column[VELOCITY]
-        return velocity * elapsed + column[POSITION]
-
     def trajectory(self, body):
         """Return position and velocity of one body as a function of the time since its start."""
         x, y, z, u, v, w, a, b, c = self._table[1:10, body].tolist()

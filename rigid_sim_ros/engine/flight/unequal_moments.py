@@ -31,7 +31,7 @@ import numpy as np
 from rigid_sim_ros.engine.flight.fixed_axis import ROUNDING
 from rigid_sim_ros.engine.flight.plain_rotation import to_body, to_world
 from rigid_sim_ros.engine.flight.series import (
-    coefficient_rows, frame_of, from_rows, into_frame, out_of_frame, polynomial, polynomials)
+    coefficient_rows, frame_of, from_rows, into_frame, out_of_frame, polynomial)
 
 ORDER = 20
 """Order of all series."""
@@ -127,12 +127,6 @@ def rates(functions, table, time, fraction):
     a, b, across, along = from_rows(table[KEPT:], 4, fraction)
     quaternion = out_of_frame(functions, table[FRAME_ROWS], a, b)
     return np.array(to_world(quaternion, (across.real, across.imag, along.real))) * table[KEPT - 1]
-
-
-def orientations_of_one(functions, constants, series, fractions):
-    """Return the quaternions, (4, K), of one body at fractions (K,) of a unit."""
-    a, b = polynomials(series[:2], fractions)
-    return out_of_frame(functions, constants[FRAME], a, b)
 
 
 def motion_of_one(functions, constants, unit, series, time, fraction):

@@ -28,6 +28,7 @@ from rigid_sim_ros.engine.encounters import Encounters
 from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.islands import Islands
 from rigid_sim_ros.engine.methods.flight_state import FlightState
+from rigid_sim_ros.engine.methods.read_ahead import ReadAhead
 from rigid_sim_ros.engine.touches import Touches
 
 
@@ -43,6 +44,7 @@ class Exact:
         self._touches = Touches(world, self._flights, state)
         self._encounters = Encounters(world, self._flights)
         self._islands = Islands(world, self._flights)
+        self._read_ahead = ReadAhead(self._flights, world)
         self._state = None
         self._begin(np.arange(world.bodies.count), time, state)
         self._encounters.fly(np.arange(world.bodies.moving_count), time)
@@ -51,8 +53,8 @@ class Exact:
     def state(self):
         """All of the state at this time, evaluated when it is first read."""
         if self._state is None:
-            self._state = FlightState(self._flights, self.time, self._force, self._torque,
-                                      self._world.work)
+            self._state = FlightState(self._flights, self._read_ahead, self.time, self._force,
+                                      self._torque)
         return self._state
 
     @property

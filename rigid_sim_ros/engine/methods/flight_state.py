@@ -24,18 +24,17 @@ class FlightState(State):
     They become attributes then, so that reading them again costs nothing.
     """
 
-    def __init__(self, flights, time, force, torque, work):
+    def __init__(self, flights, read_ahead, time, force, torque):
         self._flights = flights
+        self._read_ahead = read_ahead
         self._time = time
-        self._work = work
         self.force = force
         self.torque = torque
 
     def __getattr__(self, name):
         """Evaluate what has not been read yet; called for attributes that are not there."""
         if name in ('position', 'orientation'):
-            self._work.pose_evaluations += 1
-            self.position, self.orientation = self._flights.poses(self._time)
+            self.position, self.orientation = self._read_ahead.poses(self._time)
         elif name in ('linear_velocity', 'angular_velocity'):
             self.linear_velocity, self.angular_velocity = self._flights.velocities(self._time)
         else:

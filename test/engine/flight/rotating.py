@@ -71,6 +71,11 @@ def begin_one(flights, body, time, **given):
         np.array(value, dtype=float)[:, None] for value in values.values()))
 
 
+def poses_at_times(flights, body, times):
+    """Return positions (3, K) and quaternions (4, K) of one body at times (K,)."""
+    return flights.motions(np.full(len(times), body), times)[:2]
+
+
 def momentum_and_energy(moments, quaternion, rate):
     """Return angular momenta (3, k), world axes, and rotational energies (k,)."""
     body_rate = rotation.rotate(rotation.conjugate(quaternion), rate)

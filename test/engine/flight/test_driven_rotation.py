@@ -21,7 +21,8 @@ from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.flight.driven_rotation import KEPT_STATES
 
 from rotating import (  # noqa: I100
-    angle_error, begin_one, case, cases, flights_of, momentum_and_energy, random_quaternions)
+    angle_error, begin_one, case, cases, flights_of, momentum_and_energy, poses_at_times,
+    random_quaternions)
 
 TOLERANCES = {'driven cube': 1e-14, 'driven cube, torque down': 1e-14, 'driven cube, fast': 5e-14,
               'driven box': 2e-13, 'driven box, weak': 2e-13, 'driven box from rest': 2e-13,
@@ -35,7 +36,7 @@ def test_attitude_after_ten_seconds(name):
     alone, together = flights_of([one]), flights_of([one], copies)
     for quaternion in (alone.motion(0, 10.0)[1],
                        alone.poses(10.0)[1][:, 0],
-                       alone.poses_at_times(0, np.array([3.0, 10.0]))[1][:, 1],
+                       poses_at_times(alone, 0, np.array([3.0, 10.0]))[1][:, 1],
                        *together.poses(10.0)[1].T):
         assert angle_error(quaternion, one['result']) < TOLERANCES[name]
 
@@ -68,7 +69,7 @@ def test_what_was_asked_before_does_not_matter(one):
     for place in order.tolist():
         quaternion = scattered.poses(times[place])[1][:, 0]
         assert abs(quaternion - expected[place][1]).max() < 1e-14
-    together = forward.poses_at_times(0, times[order])[1]
+    together = poses_at_times(forward, 0, times[order])[1]
     assert abs(together - np.array([expected[place][1] for place in order]).T).max() < 1e-14
 
 
@@ -120,8 +121,8 @@ def test_a_long_flight_takes_no_more_memory_and_its_beginning_is_not_lost(copies
     for time in (1.3, 14.9, 8.0):
         np.testing.assert_array_equal(flights.poses(time)[1], fresh.poses(time)[1])
     times = np.array([0.0, 14.9])
-    np.testing.assert_array_equal(flights.poses_at_times(0, times)[1],
-                                  fresh.poses_at_times(0, times)[1])
+    np.testing.assert_array_equal(poses_at_times(flights, 0, times)[1],
+                                  poses_at_times(fresh, 0, times)[1])
 
 
 def test_a_tiny_torque_joins_the_free_rotation():

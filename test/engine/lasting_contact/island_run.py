@@ -52,7 +52,8 @@ class IslandRun:
             planes = [replace(each, material=material) for each in planes]
         scene = Scene(tuple(bodies), tuple(planes), gravity, law)
         constants = bodies_of(scene)
-        self.world = World(constants, np.array(gravity), law, step, EventLog(), Work())
+        self.world = World(constants, np.array(gravity), law, step, EventLog(), Work(),
+                           lambda count: [np.nan] * count)
         self.state = state_of(scene)
         self.time = 0.0
         self._step = step
