@@ -128,19 +128,22 @@ class FreeMotion:
         return Motion(position, orientation, struck.linear + 0.5 * time * self.acceleration,
                       angular)
 
-    def turned(self, start, kicked, struck, time):
+    def turned(self, start, kicked, struck, time, passing=None):
         """
         Return the attitudes (4, n) and rates (3, n) at the end of a step of `time` [s].
 
         The angular momentum is that of `start`, what contacts gave from `kicked` to `struck`, and
-        the torques'.
+        the torques'. On the way the bodies turn as if contacts had given what is in `passing`,
+        where that is not what is in `struck`.
         """
+        passing = passing or struck
         if self._plain:
-            turn = rotation.from_rotation_vector(time * struck.angular)
+            turn = rotation.from_rotation_vector(time * passing.angular)
             return (rotation.normalize(rotation.multiply(turn, start.orientation)),
                     struck.angular)
         given = start.angular + struck.angular - kicked.angular
-        orientation = turned(start.orientation, given, self._inertia, self._inverse_inertia,
+        on_the_way = start.angular + passing.angular - kicked.angular
+        orientation = turned(start.orientation, on_the_way, self._inertia, self._inverse_inertia,
                              self.torque, time)
         before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
         momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(

@@ -13,10 +13,12 @@
 # limitations under the License.
 
 """
-Steps of piles: islands of many bodies, of first order, with an iterative solver.
+Steps of piles: islands of many bodies, with an iterative solver.
 
-A step is semi-implicit: velocities by forces and contact impulses, poses by the new velocities.
-Contacts are found anew when something has moved enough; until then their gaps are followed along.
+A step takes velocities on by forces and contact impulses, and poses by the mean of the velocities
+before and after: to second order, as long as what touches what stays the same. Bodies that arrive
+somewhere in the step go by the velocities after it, as contacts are closed by those. Contacts are
+found anew when something has moved enough; until then their gaps are followed along.
 Contacts ask u_n >= -gap / h, so that they close in the step. What hits turns and may run into
 things by other features than were near: where a step ends with an overlap, the features that
 overlap are added, as they are there, and the step is taken again (Newton's method on the poses at
@@ -210,7 +212,7 @@ class Pile:
         quick = (duration * self._island.closing(motion) > FAST * scales.length).any()
         for attempt in range(TRIES):
             step.attempt(1 if quick else HIT_ROUNDS)
-            way = duration * self._island.closing(step.end)
+            way = duration * self._island.closing(step.passage)
             late = self._late(step, scales, way, duration)
             if late is not None and attempt < TRIES - 1:
                 step.learn(late)
@@ -234,7 +236,7 @@ class Pile:
             return None
         ahead = self._found(step.end, scales, way)
         self._ahead = step.end, ahead
-        return run_into(step.contacts.found, step.contacts.gap, ahead, step.end, duration,
+        return run_into(step.contacts.found, step.contacts.gap, ahead, step.passage, duration,
                         OVERLAP * scales.length)
 
     def _note(self, which, force, speed, time):

@@ -15,25 +15,26 @@
 What the impulses of a pile's step may do: never add energy, however well they are solved for.
 
 In scaled velocities kinetic energy is half a square. A step from v by the kick k of the forces and
-the change c of the contacts, which moves bodies at v + k + c, raises kinetic and potential energy
-together by
+the change c of the contacts, which moves bodies at v + s (k + c) with a share s of each, raises
+kinetic and potential energy together by
 
-    c . v + (c . c - k . k) / 2,
+    c . (v + (1 - s) k) + (c . c - (2 s - 1) k . k) / 2,
 
-since the potential falls by k . (v + k + c). It is not positive where contacts have closed by a
-converged solution. One that has not converged is only followed so far that it is not.
+since the potential falls by k . (v + s (k + c)). It is not positive where contacts have closed by
+a converged solution. One that has not converged is only followed so far that it is not.
 """
 
 from math import sqrt
 
 
-def kept_part(before, kick, change):
+def kept_part(before, kick, change, share):
     """
     Return (how much of a change (n,) of scaled velocities may be made, the energy lost then [J]).
 
-    Momenta are kept whatever the part.
+    Bodies move at a share (n,) of what they gain. Momenta are kept whatever the part.
     """
-    along, size, allowed = float(change @ before), float(change @ change), float(kick @ kick)
+    along, size = float(change @ (before + (1.0 - share) * kick)), float(change @ change)
+    allowed = float(kick @ ((2.0 * share - 1.0) * kick))
     part = 1.0
     if 2.0 * along + size > allowed:
         part = (sqrt(along * along + size * allowed) - along) / size

@@ -25,7 +25,10 @@ from rigid_sim_ros.engine.spin_friction import Resistance
 ITERATIONS = 60
 """Of the solver in a step, at most; what hardly moves needs a few."""
 
-ACCURACY = 1e-5
+FIRST_ITERATIONS = 300
+"""The same where nothing is known yet of the forces."""
+
+ACCURACY = 1e-6
 """Of what the acceleration scale does to velocities in a step: where the solver stops."""
 
 HIT_ITERATIONS = 25
@@ -42,6 +45,12 @@ HIT_ACCURACY = 1e-3
 
 NEVER = 1e9
 """What is asked for of points that are not there."""
+
+EVEN_OVERLAP = 1e-7
+"""Of the length scale: what a body that moves evenly may close contacts by more, in a step."""
+
+EVEN_ROUNDS = 3
+"""Of finding out who moves evenly, as it depends on who else does; after so many nobody does."""
 
 _PRESSED = 1e-50
 """Normal force that is none: the solver never lets it be zero."""
@@ -77,6 +86,8 @@ class PileStep:
         self._pressed = contacts.forces(forces)[0] > _PRESSED
         self.end = self.hits = self.speed = None
         """The `Motion` at the end; which contacts hit (k,) bool, and the speeds [m/s] before."""
+        self.passage = None
+        """The poses of `end` with the velocities at which the bodies have come there."""
         self.lost = 0.0
         """Energy [J] lost."""
         self.sinks = False
@@ -98,7 +109,8 @@ class PileStep:
         asked = np.zeros((3, len(self.speed)))
         asked[0] = np.where(contacts.found.late, contacts.gap,
                             np.maximum(contacts.gap, 0.0)) / duration
-        tolerance, iterations = ACCURACY * self._scales.acceleration * duration, ITERATIONS
+        tolerance = ACCURACY * self._scales.acceleration * duration
+        iterations = ITERATIONS if self.forces.any() else FIRST_ITERATIONS
         if self.hits.any():
             tolerance, iterations = HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS
         for _ in range(rounds):
@@ -106,8 +118,41 @@ class PileStep:
             self.sinks = bool(self.hits.any()) and self._sinks(kicked + change)
             if not self.sinks:
                 break
-        part, self.lost = kept_part(before, kicked - before, change)
-        self.end = self._drifted(kicked + part * change)
+        kick = kicked - before
+        share = self._shares(before, kick + change)
+        part, self.lost = kept_part(before, kick, change, share)
+        self._pass(kicked + part * change, share)
+
+    def _shares(self, before, gained):
+        """
+        Return how much of what it has gained in the step each body moves at, flat (6 slots,).
+
+        Half of it, as what is accelerated evenly does, so that poses are of second order; all of
+        it if something hits it, or if it would close a contact further than the solver has seen
+        to: what arrives is stopped within the step and not at its end.
+        """
+        contacts = self.contacts
+        found = contacts.contacts
+        gap = contacts.gap
+        allowed = np.minimum(gap, 0.0) - EVEN_OVERLAP * self._scales.length
+        # and what the velocities at both ends may be wrong by
+        allowed -= 2.0 * ACCURACY * self._scales.acceleration * self._duration ** 2
+        allowed = np.minimum(allowed, self._followed(before + gained))
+        strict = self.hits | contacts.found.late
+        share = np.full((len(before) // 6, 6), 0.5)
+        for _ in range(EVEN_ROUNDS):
+            for bodies in (found.body_a[strict], found.body_b[strict]):
+                share[np.minimum(bodies, len(share) - 1)] = 1.0
+            flat = share.ravel()
+            strict = self._followed(before + flat * gained) < allowed
+            if not strict.any():
+                return flat
+        return np.ones_like(before)
+
+    def _followed(self, velocity):
+        """Return the gaps (k,) [m] after a step at scaled velocities."""
+        contacts = self.contacts
+        return contacts.gap + self._duration * contacts.motion(contacts.rows.motion(velocity))[0]
 
     def _sinks(self, velocity):
         """Return whether anything gets deeper by what counts as overlap, at scaled velocities."""
@@ -141,9 +186,7 @@ class PileStep:
         (3, k) in contact axes.
         """
         contacts = self.contacts
-        velocity = contacts.scaled(self.end)
-        contacts.gap = contacts.gap + self._duration * contacts.motion(
-            contacts.rows.motion(velocity))[0]
+        contacts.gap = self._followed(contacts.scaled(self.passage))
         impulse, closed = contacts.forces(self.forces), self.closed
         rebound = np.where(self.hits & closed,
                            contacts.restitution(-self.speed) * self.speed, 0.0)
@@ -195,13 +238,21 @@ class PileStep:
             mixed_friction(bodies.friction[found.body_a], bodies.friction[found.body_b]),
         ).applied(linear, angular)
 
-    def _drifted(self, scaled):
-        """Return the motion at the end of a step at the velocities that are given scaled."""
-        start, duration, count = self._start, self._duration, self._island.member_count
-        linear, angular = self._kicked.linear.copy(), self._kicked.angular.copy()
+    def _pass(self, scaled, share):
+        """Move to the end of the step with velocities that are given scaled; see `_shares`."""
+        start, kicked, duration = self._start, self._kicked, self._duration
+        count = self._island.member_count
+        linear, angular = kicked.linear.copy(), kicked.angular.copy()
         linear[:, :count], angular[:, :count] = self.contacts.velocities(scaled)
         if self._island.resists_spin:
             linear, angular = self._resisted(linear, angular)
+        left = np.zeros(linear.shape[1])
+        left[:count] = 1.0 - share.reshape(-1, 6)[:count, 0]
         struck = Motion(start.position, start.orientation, linear, angular)
-        orientation, angular = self._free.turned(start, self._kicked, struck, duration)
-        return Motion(start.position + duration * linear, orientation, linear, angular)
+        passing = Motion(start.position, start.orientation,
+                         linear - left * (linear - start.linear),
+                         angular - left * (angular - kicked.angular))
+        orientation, angular = self._free.turned(start, kicked, struck, duration, passing)
+        position = start.position + duration * passing.linear
+        self.end = Motion(position, orientation, linear, angular)
+        self.passage = Motion(position, orientation, passing.linear, passing.angular)
