@@ -20,6 +20,8 @@ import shlex
 import shutil
 import sys
 
+from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import PARAMETERS
 from rigid_sim_ros.topics import COMMANDS, SERVICES
 
@@ -41,6 +43,24 @@ def usage():
         f'parameters and their defaults:\n{lines}\n\n'
         'example:\n'
         f'  {EXECUTABLE} --ros-args -p scene:=ten_cubes -p record:=true\n')
+
+
+def paused_text(simulation, time):
+    """Return the line to log when a collision paused the simulation at `time` [ns]."""
+    collisions = simulation.collisions
+    first = collisions[collisions['kind'] == IMPACT][0]
+    names = simulation.all_names
+    return (f'paused at {time / NANOSECONDS:.9f} s: {names[first["body_a"]]} and '
+            f'{names[first["body_b"]]} collided (parameter pause_on_collision)')
+
+
+def show(lines):
+    """Print lines, unless nobody reads them any more."""
+    try:
+        print(*lines, sep='\n', flush=True)
+    except BrokenPipeError:
+        # what is left in the buffer would fail again at the end of the process
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _literal(value):

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 
 from numpy.linalg import LinAlgError
 
+from rigid_sim_ros.nodes.announcement import paused_text
 from rigid_sim_ros.nodes.pacing import Pacer
 
 IDLE = 0.1
@@ -34,13 +35,13 @@ class Control:
     Wall times [s] are those of `now()`, a monotonic clock.
     """
 
-    def __init__(self, session, parameters, stop, now, log_error):
+    def __init__(self, session, parameters, stop, now, logger):
         """Take the parameters as they are and as they will be; see `start`."""
         self._session = session
         self._parameters = parameters
         self._stop = stop
         self._now = now
-        self._log_error = log_error
+        self._logger = logger
         self.failure = ''
         """Why the simulation cannot go on, one line; empty while it can."""
         session.paused = parameters.start_paused
@@ -115,6 +116,9 @@ class Control:
                 session.advance()
         except CANNOT_GO_ON as error:
             self._fail(error)
+        else:
+            if session.paused:
+                self._logger.info(paused_text(session.simulation, session.time))
         now = self._now()
         pacer.published(time, now)
         return now + IDLE if session.paused else pacer.due(session.next_time)
@@ -122,7 +126,7 @@ class Control:
     def _fail(self, error):
         self._session.paused = True
         self.failure = f'the simulation cannot go on, only be reset: {error}'
-        self._log_error(self.failure)
+        self._logger.error(self.failure)
 
     def _change_pace(self):
         parameters = self._parameters

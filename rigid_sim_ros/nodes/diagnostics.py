@@ -78,10 +78,10 @@ class Diagnostics:
             WARN if missed else OK, f'{self._name}: time',
             f'{state}, missed {missed} deadlines since the last report' if missed else state, {
                 'simulated time [s]': f'{session.time / NANOSECONDS:.9f}',
-                'real-time factor': f'{self._factor:.4f}',
-                'missed deadlines': pacer.missed_deadlines,
-                'wall time given up [s]': f'{pacer.time_given_up:.3f}',
-                'worst lateness [ms]': f'{self._lateness * 1e3:.3f}'})
+                'real-time factor, last period': f'{self._factor:.4f}',
+                'missed deadlines, in all': pacer.missed_deadlines,
+                'wall time given up, in all [s]': f'{pacer.time_given_up:.3f}',
+                'worst lateness, last period [ms]': f'{self._lateness * 1e3:.3f}'})
 
     def _simulation(self):
         if self._control.failure:

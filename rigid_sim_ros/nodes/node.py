@@ -19,7 +19,7 @@ import time
 from rclpy.node import Node
 
 from rigid_sim_ros.engine import Simulation
-from rigid_sim_ros.nodes.announcement import invitation, welcome
+from rigid_sim_ros.nodes.announcement import invitation, show, welcome
 from rigid_sim_ros.nodes.clock_source import ClockSource
 from rigid_sim_ros.nodes.command_topics import CommandTopics
 from rigid_sim_ros.nodes.commands import Refused
@@ -76,7 +76,7 @@ class SimulationNode:
         self._stop = stop
         self._source = Source(simulation, parameters.world_frame, dump_scene(scene))
         self.session = Session(simulation, parameters.publish_rate, self._publish_state)
-        self.control = Control(self.session, parameters, stop, now, logger.error)
+        self.control = Control(self.session, parameters, stop, now, logger)
         self.recording = Recording(self.ros, parameters, self._source)
         self.refused = CountedWarnings(logger.warning)
         self.late = CountedWarnings(logger.warning)
@@ -114,8 +114,7 @@ class SimulationNode:
                             self.publications, self.recording.text):
             self.ros.get_logger().info(line)
         # not by the logger: its prefix would have to be cut off every command before it can be run
-        for line in invitation(self.ros, self.session.simulation):
-            print(line, flush=True)
+        show(invitation(self.ros, self.session.simulation))
         self.control.start()
         self._diagnostics.start(self._now())
 

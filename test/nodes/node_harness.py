@@ -44,6 +44,7 @@ PATIENCE = 15.0
 """Wall time [s] to wait for what takes milliseconds on an idle machine."""
 
 TYPES = {row.name: row.type_name for row in (*PUBLISHED, *COMMANDS, *SERVICES)}
+TYPES['/rosout'] = 'rcl_interfaces/msg/Log'
 
 
 CROWD = """

@@ -133,7 +133,7 @@ def test_reset_with_time_running_on(paused):
 def test_pause_on_collision(paused):
     client, poses = paused
     events = client.listen('~/collisions')
-    lines = client.listen('~/collision_text')
+    lines, log = client.listen('~/collision_text'), client.listen('/rosout')
     assert set_parameter(client, 'pause_on_collision', True).successful
     assert client.call('~/pause', data=False).success
     client.spin_until(lambda: events and lines, 'a collision')
@@ -143,6 +143,8 @@ def test_pause_on_collision(paused):
     assert len(events) == len(lines) == 1
     assert '"body_a": "ball", "body_b": "ground"' in lines[0].data
     assert nanoseconds(events[0]) == end
+    client.spin_until(lambda: any(f'paused at {end / 1e9:.9f} s: ball and ground collided'
+                                  in entry.msg for entry in log), 'a line about it')
     # it goes on when told to
     assert set_parameter(client, 'pause_on_collision', False).successful
     assert client.call('~/pause', data=False).success

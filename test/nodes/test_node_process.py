@@ -113,6 +113,19 @@ def test_start_tells_where_everything_is(tmp_path):
             assert line.split('frame_id: ')[1].split('}')[0] in names
 
 
+def test_nobody_has_to_read_what_it_prints():
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'rigid_sim_ros.nodes.simulation_node', '--ros-args', '-p',
+         'scene:=ten_cubes'], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+    process.stdout.close()
+    lines = iter(process.stderr.readline, '')
+    assert any('services' in line for line in lines)
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    _, rest = process.communicate(timeout=30)
+    assert (process.returncode, rest) == (0, '')
+
+
 BAD_SCENES = {
     'no such name': (None, 'no_such_scene', ['no_such_scene', 'ten_cubes']),
     'no such file': (None, '/nowhere/scene.yaml', ['/nowhere/scene.yaml']),
