@@ -23,6 +23,7 @@ import pytest
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.flight import Flights
+from rigid_sim_ros.engine.lasting_contact.automaton.ball_resistance import resisted, turning_of
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import general_forces
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
@@ -284,3 +285,47 @@ def test_order_of_dormand_prince():
         middles.append(abs(step.between(0.3 * size)[0] - np.cos(0.3 * size)))
     assert np.log2(ends[0] / ends[1]) > 5.8
     assert np.log2(middles[0] / middles[1]) > 4.8
+
+
+@pytest.mark.parametrize('friction', [0.05, 0.3, 1.0])
+@pytest.mark.parametrize('rolling', [0.0, 0.01, 0.1])
+def test_resistance_of_a_ball_is_the_law(friction, rolling):
+    """At random: what is held does not move, what moves meets all there is, against its motion."""
+    random = np.random.default_rng(0)
+    radius, mass, moment, twist = 0.2, 2.0, 0.03, 0.004
+    for _ in range(50):
+        linear = np.array((*random.normal(scale=3.0, size=2), -9.0))
+        angular = random.normal(scale=20.0, size=3)
+        body_ = PlaneBody([], radius, 1 / mass, [moment] * 3, linear.tolist(), [0.0] * 3,
+                          friction, rolling, twist)
+        force, after, turning = (np.array(each) for each in resisted(
+            body_, None, (None, None), linear.tolist(), angular.tolist()))
+        np.testing.assert_allclose(mass * (after - linear), force, atol=1e-12)
+        arm = np.array((0.0, 0.0, -radius))
+        torque = moment * (turning - angular) - np.cross(arm, force)
+        point = (after + np.cross(turning, arm))[:2]
+        press = 9.0 * mass
+        assert force[2] == pytest.approx(press, rel=1e-14)
+        for held, motion, most in ((force[:2], point, friction * press),
+                                   (torque[:2], turning[:2], rolling * press),
+                                   (torque[2:], turning[2:], twist * press)):
+            size, speed = np.linalg.norm(held), np.linalg.norm(motion)
+            assert size <= most * (1 + 1e-12) + 1e-14
+            if size < most * (1 - 1e-9):
+                assert speed < 1e-9
+            np.testing.assert_allclose(size * motion, -speed * held, atol=1e-9)
+
+
+def test_a_ball_goes_on_turning_within_a_step():
+    """What has turned somewhere is taken to go on there while it is slow, or has come back."""
+    ball = PlaneBody([], 0.1, 1.0, [0.004] * 3, [0.0, 0.0, -9.0], [0.0] * 3, 0.5, 0.01, 0.01)
+    state = [0.0] * 6 + [1.0] + [0.0] * 3
+
+    def turning(spin, going=None):
+        return turning_of(ball, [*state, *spin], going, 1e-4)
+
+    assert turning((0.0, 0.0, 0.0)) == (None, None)
+    assert turning((3.0, 4.0, -2.0)) == ((0.6, 0.8), -1.0)
+    assert turning((3.0, 4.0, -2.0), ((1.0, 0.0), 1.0)) == ((0.6, 0.8), 1.0)
+    assert turning((-3.0, -4.0, 2.0), ((1.0, 0.0), 1.0)) == ((0.6, 0.8), 1.0)
+    assert turning((0.0, 5e-4, 0.0), ((1.0, 0.0), 1.0)) == ((1.0, 0.0), 1.0)

@@ -67,6 +67,8 @@ class OnPlane:
         self._inverse_mass = bodies.inverse_mass.item(0)
         self._inertia = bodies.inertia[:, 0].tolist()
         self._friction = float(mixed_friction(bodies.friction[0], bodies.friction[self._plane]))
+        self._resistance = (float(bodies.rolling_friction[[0, self._plane]].max()),
+                            float(bodies.pivoting_friction[[0, self._plane]].max()))
         self._surfaces = surfaces_of(bodies, 0, self._plane)
         self._corners = []
         if bodies.kinds[0] != 'sphere':
@@ -128,7 +130,8 @@ class OnPlane:
         torque = state.torque[:, member].tolist()
         acceleration = [g + self._inverse_mass * f for g, f in zip(gravity, force)]
         return PlaneBody(self._corners, self._radius, self._inverse_mass, self._inertia,
-                         self._to_plane(acceleration), self._to_plane(torque), self._friction)
+                         self._to_plane(acceleration), self._to_plane(torque), self._friction,
+                         *self._resistance)
 
     def _to_plane(self, vector):
         """Return a world vector (3,) in the frame of the plane, as floats."""
@@ -205,9 +208,9 @@ def plane_of(island, state, duration):
     Return which pair of an `Island` of one is the only one that matters, or None.
 
     It is that of the body and a plane, if nothing else can be touched in the duration [s], and
-    if nothing resists the body's spin.
+    if nothing resists the body's spin or it is a ball.
     """
-    if island.resists_spin:
+    if island.resists_spin and not _is_plain_ball(island.bodies):
         return None
     pairs = island.pairs
     count = len(pairs.pairs_a)
@@ -224,3 +227,9 @@ def plane_of(island, state, duration):
         return None
     other = pairs.pairs_a[pair] + pairs.pairs_b[pair]
     return pair if island.bodies.kinds[other] == PLANE else None
+
+
+def _is_plain_ball(bodies):
+    """Return whether the first body is a ball of equal moments."""
+    moments = bodies.inertia[:, 0]
+    return bodies.kinds[0] == 'sphere' and bool((moments == moments[0]).all())

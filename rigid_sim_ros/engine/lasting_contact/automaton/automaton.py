@@ -18,8 +18,10 @@ One body on one plane as a hybrid automaton, of high order between its events.
 Between events the points in contact are a fixed set: the forces on them solve the contact problem
 of accelerations in every stage of an adaptive Runge-Kutta step, so that pressure that vanishes and
 sliding that begins need no event. Events are located in time: a point touches, and all that touch
-are hit together; sliding ends, and the point may stick.
+are hit together; sliding ends, and the point may stick; a ball stops turning that is resisted.
 """
+
+from functools import partial
 
 from rigid_sim_ros.engine.lasting_contact.automaton import events
 from rigid_sim_ros.engine.lasting_contact.automaton.ball_attitude import turned_on
@@ -97,8 +99,12 @@ class Automaton(ContactState):
         That is: no point moves faster than `slow` [m/s], and without that motion none would be
         accelerated by more than `allowed` [m/s^2]. What turns at its turning point is not.
         """
+        body = self.body
         vx, vy, vz, wx, wy, wz = map(abs, self.now[7:])
-        if max(vx, vy, vz, self.body.radius * max(wx, wy, wz)) > slow or not self.closed:
+        if max(vx, vy, vz, body.radius * max(wx, wy, wz)) > slow or not self.closed:
+            return False
+        if body.rolling and max(wx, wy) > 0.0 or body.pivoting and wz > 0.0:
+            # its stop is an event
             return False
         return self._balanced(self.rates([*self.now[:7], *[0.0] * 6]), allowed)
 
@@ -139,11 +145,11 @@ class Automaton(ContactState):
     def _step(self, rates, size):
         """Return (step, event at its end or None, size of the next) of at most `size` [s]."""
         started = self.solved
-        slips = started[2]
+        slips, going = started[2], started[6]
         allowed = 1.0 if any(slips) or not self.closed else PIVOTING
         while True:
             self.steps += 1
-            step = Step(self.rates, self.state, rates, size)
+            step = self._tried(rates, size, going)
             error = max(map(_weighted, step.error(), self._weights)) / allowed
             if error > 1.0 and self.steps <= MOST_STEPS:
                 size *= max(0.2, 0.9 * error ** -0.2)
@@ -156,17 +162,22 @@ class Automaton(ContactState):
             if event is None:
                 return step, None, following
             if time < size:
-                step = self._step_to(rates, time, size, point)
+                step = self._step_to(rates, time, size, point, going)
             return step, event, following
 
-    def _step_to(self, rates, time, size, point):
+    def _tried(self, rates, size, going):
+        """Return a `Step` of `size` [s], in which a ball turns as it has been `going` to."""
+        derivative = partial(self.rates, going=going) if going else self.rates
+        return Step(derivative, self.state, rates, size)
+
+    def _step_to(self, rates, time, size, point, going):
         """
         Return the step to the time [s] of an event within a step of `size` [s].
 
         If it is that a point touches, the time is corrected until the point does.
         """
         for _ in range(_CORRECTIONS):
-            step = Step(self.rates, self.state, rates, time)
+            step = self._tried(rates, time, going)
             if point is None:
                 break
             gap = self.body.gaps(step.end)[point] - self.level(point)
@@ -177,7 +188,9 @@ class Automaton(ContactState):
         return step
 
     def settle(self):
-        """Stop what slides slowly: sliding has ended."""
+        """Stop what slides or turns slowly: sliding or turning has ended."""
+        if self.body.resists_spin:
+            self.hold_turning()
         self.hold(self.closed, True)
 
 

@@ -21,9 +21,10 @@ hair's breadth below it, so that it is not hit twice. What rebounds slower than 
 that takes from it is what the bounces left out would have, to second order.
 """
 
-from math import sqrt
+from math import hypot, sqrt
 
 from rigid_sim_ros.engine.friction import restitution_of_one
+from rigid_sim_ros.engine.lasting_contact.automaton.ball_resistance import resisted, turning_of
 from rigid_sim_ros.engine.lasting_contact.automaton.forces import accelerations, held
 from rigid_sim_ros.engine.lasting_contact.automaton.patterns import constrained
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import displaced, normalized
@@ -106,19 +107,29 @@ class ContactState:
 
     # -- motion --------------------------------------------------------------------------------
 
-    def rates(self, state):
-        """Return the derivative of a state, and keep what was found on the way."""
+    def rates(self, state, going=None):
+        """
+        Return the derivative of a state, and keep what was found on the way.
+
+        `going` is how a ball has been turning, for `turning_of`.
+        """
         body, closed = self.body, self.closed
         turn = body.turn(state)
         acceleration, turning = body.acceleration, body.free_turning(state, turn)
-        arms = velocities = forces = slips = ()
+        arms = velocities = forces = slips = going_on = ()
         if closed:
             arms = body.arms(turn, closed)
             velocities = body.velocities(state, arms)
             slips = self._slips_of(velocities)
-            forces, acceleration, turning = constrained(
-                body, state, turn, closed, arms, slips, acceleration, turning)
-        self.solved = (arms, velocities, slips, forces, acceleration, turning)
+            if body.resists_spin:
+                going_on = turning_of(body, state, going, self._slip)
+                force, acceleration, turning = resisted(
+                    body, slips[0], going_on, acceleration, turning)
+                forces = (force,)
+            else:
+                forces, acceleration, turning = constrained(
+                    body, state, turn, closed, arms, slips, acceleration, turning)
+        self.solved = (arms, velocities, slips, forces, acceleration, turning, going_on)
         x, y, z, w = state[3:7]
         p, q, r = state[10:]
         return [*state[7:10],
@@ -152,7 +163,7 @@ class ContactState:
 
     def lifting(self):
         """Return the closed points that have no force on them and leave the plane."""
-        arms, _, _, forces, acceleration, turning = self.solved
+        arms, _, _, forces, acceleration, turning, _ = self.solved
         idle = [which for which, force in enumerate(forces) if force[2] <= 0.0]
         if not idle:
             return []
@@ -203,6 +214,18 @@ class ContactState:
         else:
             self.state = [*self.state[:7], *(v + d for v, d in zip(
                 self.state[7:], (*change[0], *change[1])))]
+
+    def hold_turning(self):
+        """Stop a ball's turning where it is slow, and its rolling with it."""
+        vx, vy, vz, wx, wy, wz = self.state[7:]
+        radius = self.body.radius
+        if radius * hypot(wx, wy) <= self._slip:
+            wx = wy = 0.0
+            if hypot(vx, vy) <= self._slip:
+                vx = vy = 0.0
+        if radius * abs(wz) <= self._slip:
+            wz = 0.0
+        self.state = [*self.state[:7], vx, vy, vz, wx, wy, wz]
 
     # -- events --------------------------------------------------------------------------------
 

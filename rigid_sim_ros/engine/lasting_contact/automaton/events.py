@@ -62,6 +62,16 @@ def first(automaton, started, step):
         if not automaton.slow(hypot(x, y)):
             return step.size, None, None, True
         found.append((time, automaton.settle, None))
+    for direction, axes in _turns(started[6]):
+        end = _along(direction, step.end[axes])
+        if end < 0.0:
+            time = _crossing(lambda time, direction=direction, axes=axes: _along(
+                direction, step.between(time)[axes]), step.size)
+            if not automaton.slow(automaton.body.radius * hypot(*step.between(time)[axes])):
+                return step.size, None, None, True
+            found.append((time, automaton.settle, None))
+        elif end < _TURNED * hypot(*step.end[axes]):
+            return step.size, None, None, True
     if not found:
         return step.size, None, None, False
     return (*min(found, key=lambda each: each[0]), False)
@@ -122,6 +132,18 @@ def _stopping(automaton, started):
         elif along < _TURNED * hypot(x, y):
             found.append((which, automaton.closed[which], None))
     return found
+
+
+def _turns(going):
+    """Return (direction, the numbers of a state along it) of each way in which a ball turns."""
+    rolling, pivoting = going or (None, None)
+    return ([(rolling, slice(SPIN.start, SPIN.start + 2))] * (rolling is not None)
+            + [((pivoting,), slice(SPIN.start + 2, SPIN.stop))] * (pivoting is not None))
+
+
+def _along(direction, values):
+    """Return the scalar product of two short vectors."""
+    return sum(a * b for a, b in zip(direction, values))
 
 
 def velocity_of(body, state, point):

@@ -50,10 +50,13 @@ class PlaneBody:
     acceleration, torque : (3,) floats [m/s^2], [N m]
         Without contact, in the frame of the plane.
     friction : float
+    rolling, pivoting : float [m]
+        Coefficients of friction against rolling and pivoting, of a ball of equal moments only.
 
     """
 
-    def __init__(self, corners, radius, inverse_mass, inertia, acceleration, torque, friction):
+    def __init__(self, corners, radius, inverse_mass, inertia, acceleration, torque, friction,
+                 rolling=0.0, pivoting=0.0):
         self.corners = corners
         self.radius = radius
         self.inverse_mass = inverse_mass
@@ -62,6 +65,8 @@ class PlaneBody:
         self.acceleration = acceleration
         self.torque = torque
         self.friction = friction
+        self.rolling, self.pivoting = rolling, pivoting
+        self.resists_spin = rolling > 0.0 or pivoting > 0.0
         self.is_ball = not corners
         self.alike = inertia[0] == inertia[1] == inertia[2]
         self.points = range(len(corners) or 1)
