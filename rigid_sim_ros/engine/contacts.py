@@ -69,7 +69,8 @@ class Contacts:
 
     def select(self, which):
         """Return the contacts of a mask (k,) or of indices, in that order."""
-        return Contacts(*(getattr(self, field.name)[..., which] for field in fields(self)))
+        places = np.flatnonzero(which) if which.dtype == bool else which
+        return Contacts(*(getattr(self, name).take(places, axis=-1) for name in _FIELDS))
 
     @staticmethod
     def join(parts):
@@ -77,8 +78,8 @@ class Contacts:
         if not parts:
             return Contacts.none()
         return Contacts(*(
-            np.concatenate([getattr(part, field.name) for part in parts], axis=-1)
-            for field in fields(Contacts)))
+            np.concatenate([getattr(part, name) for part in parts], axis=-1)
+            for name in _FIELDS))
 
     @staticmethod
     def none():
@@ -87,3 +88,6 @@ class Contacts:
         vectors = np.empty((3, 0))
         return Contacts(integers, integers, vectors, vectors, np.empty(0), integers,
                         vectors, vectors)
+
+
+_FIELDS = tuple(field.name for field in fields(Contacts))

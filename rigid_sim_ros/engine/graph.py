@@ -38,6 +38,15 @@ def component_labels(count, body_a, body_b):
         labels = spread
 
 
+def alike(labels):
+    """Return (label, places (m,) int) for each of the labels (k,) there are, ascending."""
+    order = np.argsort(labels, kind='stable')
+    ordered = labels[order]
+    ends = np.flatnonzero(ordered[1:] != ordered[:-1]) + 1
+    parts = np.split(order, ends) if len(labels) else []
+    return [(labels.item(part[0]), part) for part in parts]
+
+
 def contact_groups(bodies, contacts):
     """
     Return `Contacts` as a list of them, one for each set of moving bodies that hang together.
@@ -54,7 +63,7 @@ def contact_groups(bodies, contacts):
     labels = component_labels(bodies.count, a[both], b[both])[np.where(moves[a], a, b)]
     if (labels == labels[0]).all():
         return [contacts]
-    return [contacts.select(labels == label) for label in np.unique(labels)]
+    return [contacts.select(places) for _, places in alike(labels)]
 
 
 def lone_contacts(bodies, contacts):

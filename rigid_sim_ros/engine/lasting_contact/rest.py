@@ -49,7 +49,7 @@ def slow(island, scales, motion):
 
 def stands(island, free, scales, motion, contacts, members):
     """
-    Return whether touching contacts hold some of an island's members, (m,) bool.
+    Return whether touching contacts hold some of an island's members, (m,) int.
 
     Where there are very many contacts that is only looked for with all of them pressing and
     sticking, and otherwise said not to be so.

@@ -238,7 +238,7 @@ def test_spheres_by_hand():
     scene = bodies([[2, 2, 2]], radii=[0.5, 0.25], planes=[((0, 0, 1), -1.0)])
     position, orientation = poses((0, 0, 0), (0, 0, 1.45), (1.1, 1.2, 0), (0, 0, 0))
     contacts = find_contacts(scene, [1, 0, 2, 1], [0, 2, 3, 2], position, orientation, 10.0)
-    by_pair = {(a, b): contacts.select([k]) for k, (a, b) in
+    by_pair = {(a, b): contacts.select(np.array([k])) for k, (a, b) in
                enumerate(zip(contacts.body_a.tolist(), contacts.body_b.tolist()))}
     assert set(contacts.feature) == {ROUND}
     face, edge = by_pair[1, 0], by_pair[0, 2]

@@ -16,7 +16,7 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.graph import component_labels
+from rigid_sim_ros.engine.graph import alike, component_labels
 from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
 from rigid_sim_ros.engine.lasting_contact.scales import REST
 
@@ -49,11 +49,12 @@ def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     of_contact = labels[np.where(a < count, a, b)]
     moved = np.zeros(count, dtype=bool)
     np.logical_or.at(moved, labels, ~calm)
-    touched = np.isin(labels, of_contact)
-    for label in np.unique(labels[~moved[labels] & touched]):
-        members = labels == label
+    contacts_of = dict(alike(of_contact))
+    for label, members in alike(labels):
+        if moved[label] or label not in contacts_of:
+            continue
         if quiet[members].all() or stands(
-                island, free, scales, motion, contacts.select(of_contact == label), members):
+                island, free, scales, motion, contacts.select(contacts_of[label]), members):
             resting[members] = label
     return resting, contacts
 
