@@ -52,11 +52,11 @@ $(READY): setup.py setup.cfg pyproject.toml
 	@rm -rf $(VENV)
 ifdef ROS
 	@$(PYTHON) -m venv --system-site-packages $(VENV)
-	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[view,test]' \
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[record,view,test]' \
 		"numpy==$$($(PYTHON) -c 'import numpy; print(numpy.__version__)')"
 else
 	@$(PYTHON) -m venv $(VENV)
-	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[ros,view,test]'
+	@$(VENV)/bin/pip install $(PIP_OPTIONS) --editable '.[ros,record,view,test]'
 endif
 	@touch $@
 

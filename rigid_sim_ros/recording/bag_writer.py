@@ -18,7 +18,7 @@ import os
 
 from rigid_sim_ros.recording.bag_metadata import bag_metadata, to_yaml, write_metadata
 from rigid_sim_ros.recording.disk import sync_path
-from rigid_sim_ros.recording.mcap_file import CHUNK_BYTES, McapFile
+from rigid_sim_ros.recording.mcap_file import McapFile
 
 
 class BagWriter:
@@ -33,21 +33,16 @@ class BagWriter:
         All that may be written; channels are their numbers from 1.
     compression, library, attachments
         As for `McapFile`.
-    max_bytes, max_ns : int
-        Size [bytes] and simulated time [ns] after which a new file begins; 0: never.
 
     """
 
-    def __init__(self, path, topics, compression, library, attachments, max_bytes=0, max_ns=0):
+    def __init__(self, path, topics, compression, library, attachments):
         self._path, self._topics = path, topics
         self._compression, self._library = compression, library
         self._attachments = attachments
-        self._max_bytes, self._max_ns = max_bytes, max_ns
-        self._latched = {}
         self._summaries = []
         self._unsynced = set()
         self._finished_bytes = 0
-        self._start_ns = self._last_ns = 0
         os.makedirs(path)
         self._open_file()
         self._write_sidecar()
@@ -62,31 +57,20 @@ class BagWriter:
         """Bytes written to the disk."""
         return self._finished_bytes + self._file.size
 
-    def add(self, channel, time_ns, data):
-        """Add a message; a time that goes back begins a new file."""
-        if not self._file.has_messages:
-            self._start_ns = time_ns
-        elif self._must_split(time_ns):
+    def write(self, chunk):
+        """Write a chunk to the file that it belongs to; return by how much that grew [bytes]."""
+        if chunk.file_number == len(self._summaries):
             self._next_file()
-            self._start_ns = time_ns
-            # so that each file stands alone
-            for latched, latched_data in self._latched.items():
-                if latched != channel:
-                    self._file.add(latched, time_ns, latched_data)
-        self._last_ns = time_ns
-        self._file.add(channel, time_ns, data)
-        if self._topics[channel - 1].is_latched:
-            self._latched[channel] = data
-        if self._file.chunk_size >= CHUNK_BYTES:
-            self._file.close_chunk()
+        before = self._file.size
+        self._file.write(chunk)
+        return self._file.size - before
 
     def attach(self, name, media_type, parts):
         """Attach data in parts to the file that is being written, and to none after it."""
         self._file.attach(name, media_type, parts)
 
-    def flush(self):
-        """Put everything on the disk, safe from a power cut."""
-        self._file.close_chunk()
+    def sync(self):
+        """Make everything that was written safe from a power cut."""
         self._file.sync()
         self.sync_finished()
 
@@ -114,11 +98,6 @@ class BagWriter:
             # nothing more can be written, or the file is closed: what is there stays as it is
             self._file.abandon()
 
-    def _must_split(self, time_ns):
-        return (time_ns < self._last_ns
-                or 0 < self._max_ns <= time_ns - self._start_ns
-                or 0 < self._max_bytes <= self._file.size + self._file.chunk_size)
-
     def _open_file(self):
         name = f'{os.path.basename(self._path)}_{len(self._summaries)}.mcap'
         self._file = McapFile(os.path.join(self._path, name), self._topics, self._compression,
@@ -133,7 +112,6 @@ class BagWriter:
         self._write_sidecar()
 
     def _finish_file(self):
-        self._file.close_chunk()
         self._write_bag_metadata()
         self._file.finish()
         self._unsynced |= {self._file.path, self._path}

@@ -24,7 +24,6 @@ told in `damage`; it is never guessed.
 from io import BytesIO
 import os
 import struct
-from zlib import crc32
 
 import lz4.frame
 from mcap.data_stream import ReadDataStream
@@ -32,6 +31,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Header, Schema, Statistics
 from rigid_sim_ros.recording.bag_metadata import BagTopic
+from rigid_sim_ros.recording.checksum import crc32
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.mcap_file import MAGIC
 import zstandard

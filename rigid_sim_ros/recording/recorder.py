@@ -16,12 +16,13 @@
 Records messages as a rosbag2 bag, beside whoever makes them.
 
 The bag is a folder with `NAME_0.mcap`, `NAME_1.mcap` ... and `metadata.yaml`, there from the
-start. Messages are queued and written by a thread of its own, so a slow disk delays nobody.
+start. Messages are copied into chunks at once, while they are in the processor's cache. A thread
+of its own writes whole chunks: so a slow disk delays nobody, and the interpreter, which the thread
+would have to ask for at every message, is seldom held up.
 Whatever goes wrong with the disk ends the recording with one error and leaves what was written
 readable; whoever writes goes on.
 """
 
-from collections import deque
 from dataclasses import dataclass
 import json
 import os
@@ -32,7 +33,8 @@ from rigid_sim_ros.recording.bag_metadata import bag_topic
 from rigid_sim_ros.recording.bag_writer import BagWriter
 from rigid_sim_ros.recording.errors import RecordingError
 from rigid_sim_ros.recording.history import ATTACHMENT, MEDIA_TYPE
-from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
+from rigid_sim_ros.recording.mcap_file import COMPRESSIONS, declarations
+from rigid_sim_ros.recording.packing import Packing
 from rigid_sim_ros.recording.software import package_version, software
 
 RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
@@ -41,13 +43,11 @@ RECORDING, CLOSED, FAILED = 'recording', 'closed', 'failed'
 DROP, WAIT = 'drop', 'wait'
 """What `Recorder.write` does when the queue is full: count a lost message, or wait for room."""
 
-_BATCH_SECONDS = 0.05
-"""How long messages gather before the thread takes them, so that it seldom asks for the GIL."""
+_MARGIN = 0.1
+"""How long before its time is up [s] what has come is written."""
 
-_BATCH_BYTES = 2**22
-
-_MESSAGE_OVERHEAD = 200
-"""Bytes a queued message costs besides its data."""
+_MESSAGE_OVERHEAD = 31
+"""Bytes a message takes besides its data."""
 
 _CLOSE_SECONDS = 1.2
 """How long closing goes on emptying the queue; the file is finished after that in any case."""
@@ -130,12 +130,14 @@ class Recorder:
         self._queue_bytes, self._when_full = queue_bytes, when_full
         self._on_full, self._full = on_full, False
         self._condition = Condition()
-        self._queue = deque()
-        self._queued_bytes = self._dropped_count = 0
+        self._dropped_count = 0
+        self._due = None
         self._phase, self._error = RECORDING, ''
         self._closing_until = None
         self._history = history
-        self._bag = self._begin(topics, compression, _attachments(scene, options), max_bytes,
+        self._bag = self._begin(topics, compression, _attachments(scene, options))
+        latched = {self._channels[topic.name] for topic in topics if topic.is_latched}
+        self._packing = Packing(latched, declarations(topics), self._bag.byte_count, max_bytes,
                                 round(max_duration * 1e9))
         self._thread = Thread(target=self._run, name='recorder', daemon=True)
         self._thread.start()
@@ -154,35 +156,30 @@ class Recorder:
     def state(self):
         """Return a `RecorderState`."""
         with self._condition:
+            waiting = self._packing if self._phase == RECORDING else None
             return RecorderState(
                 self._phase, self.path, self._error, self._bag.message_count,
-                self._bag.byte_count, len(self._queue), self._queued_bytes, self._dropped_count)
+                self._bag.byte_count, waiting.message_count if waiting else 0,
+                waiting.byte_count if waiting else 0, self._dropped_count)
 
     def write(self, topic_name, time_ns, data):
         """
-        Queue a message of a topic at a simulated time [ns]; it returns at once.
+        Take a message of a topic at a simulated time [ns]; it returns at once.
 
-        Times that go back begin a new file of the bag. Raises KeyError for a topic that was not
-        given at the start, and nothing else; after a failure messages are counted as dropped.
+        Times that go back begin a new file of the bag. The data is copied. Raises KeyError for a
+        topic that was not given at the start, and nothing else; after a failure messages are
+        counted as dropped.
         """
         channel = self._channels[topic_name]
-        size = len(data) + _MESSAGE_OVERHEAD
         with self._condition:
-            if not self._queue:
-                self._full = False
-            while self._phase == RECORDING and self._queued_bytes + size > self._queue_bytes:
-                if not self._full:
-                    self._full = True
-                    self._on_full()
-                if self._when_full == DROP or not self._queue:
-                    break
-                self._condition.wait()
-            if self._phase != RECORDING or self._queued_bytes + size > self._queue_bytes:
+            if not self._has_room(len(data) + _MESSAGE_OVERHEAD):
                 self._dropped_count += 1
                 return
-            self._queue.append((channel, time_ns, data))
-            self._queued_bytes += size
-            if len(self._queue) == 1 or self._queued_bytes >= _BATCH_BYTES:
+            self._packing.add(channel, time_ns, data)
+            if self._due is None:
+                self._due = monotonic() + max(0.0, self._chunk_seconds - _MARGIN)
+                self._condition.notify_all()
+            elif self._packing.closed:
                 self._condition.notify_all()
 
     def close(self):
@@ -203,13 +200,30 @@ class Recorder:
                        f'rigid_sim_recover {self.path} finishes the bag')
         return self.state()
 
-    def _begin(self, topics, *options):
+    def _has_room(self, size):
+        """Tell whether so many bytes can be taken, after waiting for it if that was asked for."""
+        packing = self._packing
+        if not packing.byte_count:
+            self._full = False
+        while self._phase == RECORDING and packing.byte_count + size > self._queue_bytes:
+            if not self._full:
+                self._full = True
+                self._on_full()
+            # however small the queue is, what is in it can be written
+            packing.close_chunk()
+            self._condition.notify_all()
+            if self._when_full == DROP or not packing.byte_count:
+                return False
+            self._condition.wait()
+        return self._phase == RECORDING
+
+    def _begin(self, topics, compression, attachments):
         try:
             if os.path.lexists(self.path):
                 raise RecordingError(f'{self.path} is there already; a recording never replaces '
                                      'another')
-            return BagWriter(self.path, topics, options[0], f'rigid_sim_ros {package_version()}',
-                             *options[1:])
+            return BagWriter(self.path, topics, compression,
+                             f'rigid_sim_ros {package_version()}', attachments)
         except OSError as error:
             raise RecordingError(
                 f'cannot record to {self.path}: {error.strerror or error}') from error
@@ -239,38 +253,37 @@ class Recorder:
                 self._condition.notify_all()
 
     def _write_until_closed(self):
-        chunk_due = None
         while True:
-            batch = self._next_batch(chunk_due)
-            for index, message in enumerate(batch):
+            chunks, is_due, is_last = self._next_chunks()
+            for chunk in chunks:
                 if self._out_of_time():
-                    self._drop(len(batch) - index)
-                    break
-                self._bag.add(*message)
-            if batch and chunk_due is None:
-                # the oldest message may have waited for one batch and will wait for another
-                chunk_due = monotonic() + max(0.0, self._chunk_seconds - 2 * _BATCH_SECONDS)
+                    self._drop_waiting()
+                    return
+                byte_count = self._bag.write(chunk)
+                with self._condition:
+                    self._packing.give_back(chunk, byte_count)
+                    self._condition.notify_all()
             self._bag.check()
-            if chunk_due is not None and monotonic() >= chunk_due:
-                self._bag.flush()
-                chunk_due = None
-            if self._closing_until is not None and not self._queue:
+            if is_due:
+                self._bag.sync()
+                self._bag.sync_finished()
+            if is_last and not self._packing.message_count:
                 return
 
-    def _next_batch(self, chunk_due):
-        """Wait until there is something to do and return the messages queued, maybe none."""
+    def _next_chunks(self):
+        """Wait for something to do; return chunks, whether time is up, and whether all is over."""
         with self._condition:
-            self._condition.wait_for(
-                lambda: self._queue or self._closing_until is not None,
-                None if chunk_due is None else max(0.0, chunk_due - monotonic()))
-            self._condition.wait_for(
-                lambda: self._queued_bytes >= _BATCH_BYTES or self._closing_until is not None,
-                _BATCH_SECONDS)
-            batch = list(self._queue)
-            self._queue.clear()
-            self._queued_bytes = 0
-            self._condition.notify_all()
-        return batch
+            while not self._packing.closed and self._closing_until is None:
+                time_left = None if self._due is None else self._due - monotonic()
+                if time_left is not None and time_left <= 0:
+                    break
+                self._condition.wait(time_left)
+            is_last = self._closing_until is not None
+            is_due = self._due is not None and monotonic() >= self._due
+            if is_due or is_last:
+                self._packing.close_chunk()
+                self._due = None
+            return self._packing.take(), is_due, is_last
 
     def _out_of_time(self):
         return self._closing_until is not None and monotonic() > self._closing_until
@@ -280,10 +293,8 @@ class Recorder:
             if self._phase == RECORDING:
                 self._phase = FAILED
                 self._error = f'recording to {self.path} stopped: {reason}'
-                self._dropped_count += len(self._queue)
-                self._queue.clear()
-                self._queued_bytes = 0
+                self._dropped_count += self._packing.message_count
 
-    def _drop(self, count):
+    def _drop_waiting(self):
         with self._condition:
-            self._dropped_count += count
+            self._dropped_count += self._packing.message_count

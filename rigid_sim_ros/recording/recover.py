@@ -25,9 +25,10 @@ import os
 from rigid_sim_ros.recording.bag import bag_files
 from rigid_sim_ros.recording.bag_metadata import (
     bag_metadata, FileSummary, to_yaml, write_metadata)
+from rigid_sim_ros.recording.chunk import Chunk, CHUNK_BYTES
 from rigid_sim_ros.recording.disk import is_being_written, sync_path
 from rigid_sim_ros.recording.errors import RecordingError
-from rigid_sim_ros.recording.mcap_file import CHUNK_BYTES, McapFile
+from rigid_sim_ros.recording.mcap_file import declarations, McapFile
 from rigid_sim_ros.recording.mcap_scan import McapScan
 
 _COMPRESSION = 'zstd'
@@ -115,17 +116,18 @@ def _remove(path):
 
 
 def _write_anew(path, scan, summaries):
-    file, channels = None, {}
+    file, chunk, channels = None, Chunk(), {}
     for channel, sequence, time_ns, data in scan.messages():
         if file is None:
-            file = _begin(path, scan, channels)
+            file = _begin(path, scan, chunk, channels)
         if channel in channels:
-            file.add(channels[channel], time_ns, bytes(data), sequence)
-            if file.chunk_size >= CHUNK_BYTES:
-                file.close_chunk()
+            chunk.add(channels[channel], sequence, time_ns, data)
+            if chunk.size >= CHUNK_BYTES:
+                file.write(chunk)
+                chunk.clear()
     if file is None:
-        file = _begin(path, scan, channels)
-    file.close_chunk()
+        file = _begin(path, scan, chunk, channels)
+    file.write(chunk)
     file.summary.path = scan.name
     file.write_metadata('rosbag2', {'serialized_metadata': to_yaml(
         bag_metadata(tuple(scan.topics.values()), [*summaries, file.summary]))})
@@ -133,9 +135,11 @@ def _write_anew(path, scan, summaries):
     return file
 
 
-def _begin(path, scan, channels):
+def _begin(path, scan, chunk, channels):
     """Open the new file with the channels known by now, which are all: they come first."""
     channels.update((channel, number) for number, channel in enumerate(scan.topics, 1))
+    topics = tuple(scan.topics.values())
+    chunk.clear(declarations(topics))
     attachments = [(attachment.name, attachment.media_type, attachment.data)
                    for attachment in scan.attachments.values()]
-    return McapFile(path, tuple(scan.topics.values()), _COMPRESSION, scan.library, attachments)
+    return McapFile(path, topics, _COMPRESSION, scan.library, attachments)
