@@ -103,13 +103,19 @@ class Islands:
             self.touching[indices] = self.active = True
 
     def wake(self, indices):
-        """Wake those of bodies (k,) that sleep and all their mates; return who woke (m,)."""
-        if not self.asleep[indices].any():
-            return indices[:0]
-        woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
-        self.asleep[woken] = False
-        self._mates[woken] = -1
-        self.add(woken)
+        """
+        Wake those of bodies (k,) that sleep and all their mates; return who woke (m,).
+
+        Something has happened to all of them: that they have not moved so far says nothing.
+        """
+        woken = indices[:0]
+        if self.asleep[indices].any():
+            woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
+            self.asleep[woken] = False
+            self._mates[woken] = -1
+            self.add(woken)
+        for island in self._islands:
+            island.disturb(np.union1d(indices, woken))
         return woken
 
     def reached(self, start, end, state, deflected):

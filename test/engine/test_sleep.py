@@ -66,6 +66,19 @@ def test_one_that_is_pushed_moves_and_its_tower_with_it_but_no_other():
     assert simulation.linear_velocity[0, 0] > 0.0
 
 
+@pytest.mark.parametrize('rest', [0.0, 1.0])
+def test_a_push_moves_one_of_many_that_lean_on_each_other(rest):
+    """However long they have not moved."""
+    count, force, duration = 9, 10.0, 0.1
+    simulation = asleep(*(cube(f'c{row}', row * EDGE) for row in range(count)))
+    simulation.advance(rest)
+    simulation.apply_wrench(f'c{count - 1}', force=(force, 0.0, 0.0))
+    simulation.advance(duration)
+    expected = (force - 0.5 * 9.81) * duration
+    assert simulation.linear_velocity[-1] == pytest.approx((expected, 0.0, 0.0), abs=1e-5)
+    assert abs(simulation.linear_velocity[:-1]).max() < 1e-5
+
+
 def test_a_push_that_friction_holds_ends_in_sleep_again():
     simulation = asleep(cube('a', 0.0))
     simulation.apply_wrench('a', force=(4.0, 0.0, 0.0))

@@ -26,7 +26,7 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
-from rigid_sim_ros.engine.lasting_contact.near import memory_of, Near
+from rigid_sim_ros.engine.lasting_contact.near import memory_of, Near, same_poses
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
 from rigid_sim_ros.engine.spin_friction import resists_spin
@@ -74,6 +74,8 @@ class Island:
         """What has been set up for one member on one plane, by the place of the pair."""
         self.impulses = memory_of(older, pairs_a, pairs_b)
         """`Impulses` of the last step's halves, by name."""
+        self._found = None
+        """The margins [m], the `Motion` and its contacts that were found last."""
         self._near = None
         """The margin [m] and the `Near` that were found last."""
         self.pile = None
@@ -144,9 +146,18 @@ class Island:
         return (np.abs(rates) * self._arms).sum(axis=0)
 
     def find_contacts(self, motion, margin):
-        """Return the contacts (own columns) with gaps below a margin [m]."""
-        self.world.work.narrow_phases += len(self.pairs.pairs_a)
-        return self.pairs.find_contacts(motion.position, motion.orientation, margin)
+        """Return the contacts (own columns) with gaps below a margin [m], (p,) or one."""
+        last = self._found
+        if last is None or not (np.array_equal(last[0], margin) and same_poses(last[1], motion)):
+            self.world.work.narrow_phases += len(self.pairs.pairs_a)
+            last = self._found = margin, motion, self.pairs.find_contacts(
+                motion.position, motion.orientation, margin)
+        return last[2]
+
+    def disturb(self, indices):
+        """Note that something has happened to these bodies (k,) of the scene, members or not."""
+        if self.pile is not None:
+            self.pile.quiet.forget(indices)
 
     def near(self, motion, margin):
         """Return the contacts `Near` a `Motion`, with gaps below a margin [m]."""

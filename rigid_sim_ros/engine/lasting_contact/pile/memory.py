@@ -99,6 +99,10 @@ class Quiet:
         self._orientation[:, mine] = older._orientation[:, theirs]
         self._since[mine] = older._since[theirs]
 
+    def forget(self, members):
+        """Count from now on for these bodies (k,) of the scene: somebody disturbs them."""
+        self._position[:, np.isin(self.members, members)] = np.inf
+
     def durations(self, time, motion, radius, way):
         """
         Return for how long [s] bodies have been where they are, (m,).
