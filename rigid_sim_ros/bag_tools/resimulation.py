@@ -118,7 +118,7 @@ class Resimulation:
         for message in self._messages:
             kind = self._bag.kind(message.topic)
             if kind == POSES and self._session is None:
-                self._begin(message)
+                self._begin(message, ahead)
                 for earlier_kind, earlier in ahead:
                     self._take(earlier_kind, earlier)
                 ahead.clear()
@@ -132,8 +132,22 @@ class Resimulation:
         if self._session is None:
             raise RecordingError(f'{self._bag.path} holds no state')
 
-    def _begin(self, message):
+    def _check_is_beginning(self, ahead):
+        """
+        Refuse what lacks the line of parameters that every recording begins with.
+
+        A later file of a bag holds scene and options too, and may begin at time zero after a
+        reset; but what the reset kept, bodies and parameters, is told in the files before it.
+        """
+        if not any(kind == 'journal' and _event(message) == PARAMETERS
+                   for kind, message in ahead):
+            raise RecordingError(
+                f'{self._bag.path} lacks the beginning of a recording: if it is a later file of a '
+                'bag it cannot be simulated again alone, only with the folder of the bag')
+
+    def _begin(self, message, ahead):
         scene, options = self._scene_and_options()
+        self._check_is_beginning(ahead)
         history = self._bag.history()
         begin_ns, past = read_history(history) if history else (0, ())
         if message.time_ns and not history:
@@ -233,6 +247,13 @@ class Resimulation:
             else self._collisions)
         return Pair(kind, message.time_ns, bytes(message.data),
                     self._encoders[kind](message.time_ns))
+
+
+def _event(message):
+    try:
+        return decode_journal(message.data)['event']
+    except MessageError:
+        return ''
 
 
 def _for_readers(line):

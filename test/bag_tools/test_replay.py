@@ -225,6 +225,29 @@ def test_a_command_that_was_not_recorded_shows_as_the_first_difference(tmp_path,
     assert ' recorded, [3.0, 0.0, ' in output
 
 
+def test_a_later_file_alone_is_refused_and_not_taken_for_different(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag') as run:
+        run.write('~/journal', encode_parameters('body', 0.0))
+        run.session.commands.axes = 'body'
+        run.advance(3)
+        run.write('~/journal', encode_reset(True))
+        run.session.reset(True)
+        run.advance(10)
+        # in axes that only the first file tells
+        run.command('~/cmd_force', 'cube', 5, 0, 0)
+        run.advance(3)
+    assert replay.main([str(tmp_path / 'bag')]) == 0
+    assert replay.main([str(tmp_path / 'bag' / 'bag_0.mcap')]) == 0
+    capsys.readouterr()
+    assert replay.main([str(tmp_path / 'bag' / 'bag_1.mcap')]) == 2
+    output = capsys.readouterr()
+    assert not output.out
+    line, = output.err.strip().splitlines()
+    assert line.endswith('bag_1.mcap lacks the beginning of a recording: if it is a later file of '
+                         'a bag it cannot be simulated again alone, only with the folder of the '
+                         'bag')
+
+
 def test_another_numpy_is_told_where_results_differ(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(np, '__version__', '0.1')
     with Recorded(tmp_path / 'bag') as run:
