@@ -76,8 +76,8 @@ class Published:
     A published topic.
 
     `encoder(source)` is called once for a `Source`, and gives a function from a time [ns] to the
-    bytes of the message at that time. An encoder holds what does not change while the source has
-    the same bodies.
+    message at that time: bytes, or a view of them that holds until the next call, as not everybody
+    needs a copy. An encoder holds what does not change while the source has the same bodies.
     """
 
     name: str
@@ -112,13 +112,13 @@ class Service:
 def _poses(source):
     simulation = source.simulation
     encoder = messages.PoseArrayEncoder(source.frame_id, len(simulation.names))
-    return lambda time_ns: encoder.encode(time_ns, simulation.position, simulation.orientation)
+    return lambda time_ns: encoder.view(time_ns, simulation.position, simulation.orientation)
 
 
 def _states(source):
     simulation = source.simulation
     encoder = messages.MultiDOFJointStateEncoder(source.frame_id, simulation.names)
-    return lambda time_ns: encoder.encode(
+    return lambda time_ns: encoder.view(
         time_ns, simulation.position, simulation.orientation, simulation.linear_velocity,
         simulation.angular_velocity, simulation.force, simulation.torque)
 

@@ -246,7 +246,7 @@ class Resimulation:
             np.zeros(0, session.simulation.collisions.dtype) if self._collisions is None
             else self._collisions)
         return Pair(kind, message.time_ns, bytes(message.data),
-                    self._encoders[kind](message.time_ns))
+                    bytes(self._encoders[kind](message.time_ns)))
 
 
 def _event(message):

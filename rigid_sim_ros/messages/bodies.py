@@ -38,10 +38,14 @@ class PoseArrayEncoder:
 
     def encode(self, time_ns, position, orientation):
         """Return the message with a stamp [ns], positions (n, 3) and orientations (n, 4)."""
+        return bytes(self.view(time_ns, position, orientation))
+
+    def view(self, time_ns, position, orientation):
+        """Return what `encode` does as a view, which holds until the next message is made."""
         self._template.set_time(time_ns)
         self._poses[:, :3] = position
         self._poses[:, 3:] = orientation
-        return self._template.message()
+        return self._template.view()
 
 
 class MultiDOFJointStateEncoder:
@@ -61,6 +65,12 @@ class MultiDOFJointStateEncoder:
     def encode(self, time_ns, position, orientation, linear_velocity, angular_velocity,
                force, torque):
         """Return the message with a stamp [ns] and the bodies' poses, twists and wrenches."""
+        return bytes(self.view(time_ns, position, orientation, linear_velocity, angular_velocity,
+                               force, torque))
+
+    def view(self, time_ns, position, orientation, linear_velocity, angular_velocity,
+             force, torque):
+        """Return what `encode` does as a view, which holds until the next message is made."""
         self._template.set_time(time_ns)
         self._transforms[:, :3] = position
         self._transforms[:, 3:] = orientation
@@ -68,7 +78,7 @@ class MultiDOFJointStateEncoder:
         self._twists[:, 3:] = angular_velocity
         self._wrenches[:, :3] = force
         self._wrenches[:, 3:] = torque
-        return self._template.message()
+        return self._template.view()
 
 
 class PoseArray(NamedTuple):

@@ -152,6 +152,10 @@ class Template:
         """Return the message as it is filled in now."""
         return bytes(self._message)
 
+    def view(self):
+        """Return the message without copying it: it changes as the template is filled in anew."""
+        return self._message.toreadonly()
+
 
 class Reader:
     """

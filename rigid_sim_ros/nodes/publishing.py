@@ -66,7 +66,7 @@ class Publication:
         data = self._encode(time)
         self.encoded += 1
         if heard:
-            self._publisher.publish(data)
+            self._publisher.publish(bytes(data))
         if recorded:
             self._recording.write(self.row.name, time, data)
 

@@ -35,7 +35,8 @@ class Chunk:
     """
 
     def __init__(self):
-        self._data = bytearray(CHUNK_BYTES + CHUNK_BYTES // 4)
+        # a view: an assignment to a bytearray copies twice
+        self._data = memoryview(bytearray(CHUNK_BYTES + CHUNK_BYTES // 4))
         self.clear()
 
     def clear(self, declarations=b''):
@@ -57,7 +58,9 @@ class Chunk:
         start = size + _MESSAGE.size
         end = start + len(data)
         if end > len(self._data):
-            self._data += bytes(end)
+            grown = memoryview(bytearray(2 * end))
+            grown[:size] = self._data[:size]
+            self._data = grown
         _MESSAGE.pack_into(self._data, size, Opcode.MESSAGE, _MESSAGE_FIELDS + len(data), channel,
                            sequence, time_ns, time_ns)
         self._data[start:end] = data
@@ -76,7 +79,7 @@ class Chunk:
 
     def data(self):
         """Return the records, a view."""
-        return memoryview(self._data)[:self.size]
+        return self._data[:self.size]
 
     def counts(self):
         """Return the number of messages of each channel that has any."""
