@@ -29,13 +29,13 @@ from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
 from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows
 
 
-def tower(count, edge=0.2, offset=0.0, **values):
+def tower(count, edge=0.2, offset=0.0, friction=0.5, **values):
     """Return a tower of cubes, each shifted at random by at most `offset` [m]."""
     random = np.random.default_rng(1)
     return IslandRun([
         body(f'cube_{level}', Cube(edge), position=(*(offset * random.uniform(-1, 1, 2)),
                                                     edge * (level + 0.5)))
-        for level in range(count)], friction=0.5, **values)
+        for level in range(count)], friction=friction, **values)
 
 
 def heap(seed, **values):
@@ -169,6 +169,36 @@ def test_many_balls_roll_on_a_pushed_plate(rate):
     angle = 2 * np.arctan2(state.orientation[1, :9], state.orientation[3, :9])
     np.testing.assert_allclose(
         angle, -duration ** 2 / 2 * (acceleration[9] - acceleration[0]) / radius, rtol=2e-6)
+
+
+def test_a_push_on_top_of_a_tower_moves_nothing_below():
+    friction, force, duration = 0.3, 0.4 * GRAVITY, 0.1
+    run = tower(10, friction=friction)
+    run.run(0.5)
+    run.state.force[0, 9] = force
+    run.island.disturb(np.array([9]))
+    run.run(duration)
+    velocity = run.state.linear_velocity[0, :10]
+    # friction on the one below does not overturn the rest: 1.8 m of lever against 0.1 m
+    assert 1.8 * friction < 9 * 0.1
+    assert velocity[9] == pytest.approx((force - friction * GRAVITY) * duration, rel=1e-5)
+    assert abs(velocity[:9]).max() < 2e-5
+
+
+@pytest.mark.parametrize('restitution', [0.0, 0.5, 1.0])
+def test_a_ball_hits_a_row_as_one_body(restitution):
+    """On smooth ground: all that touch are compressed together, and only the hit rebounds."""
+    count, speed, step = 8, 3.0, 1 / 240
+    row = [body(f'c{place}', Cube(0.2), position=(0.2 * place, 0.0, 0.1))
+           for place in range(count)]
+    ball = body('ball', Sphere(0.1), position=(-0.2 - 4.5 * speed * step, 0.0, 0.1),
+                velocity=(speed, 0.0, 0.0))
+    run = IslandRun([*row, ball], restitution=restitution, friction=0.0)
+    run.run(20 * step)
+    together = speed * (1 + restitution) / (count + 1)
+    expected = [together] * count + [speed - count * together]
+    np.testing.assert_allclose(run.state.linear_velocity[0, :count + 1], expected,
+                               atol=1e-3 * speed)
 
 
 @pytest.mark.parametrize('share', [(1.0, 1.0, 1.0), (0.5, 0.5, 1.0), (0.5, 0.5, 0.5)])

@@ -22,8 +22,14 @@ from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.solvers.accelerated import accelerated
 from rigid_sim_ros.engine.spin_friction import Resistance
 
-ITERATIONS = 60
-"""Of the solver in a step, at most; what hardly moves needs a few."""
+ITERATIONS = 60, 1000
+"""
+Of the solver in a step, at most, of many contacts and of few; what hardly moves needs a few. A
+tower of ten takes some hundreds when a force on it changes, and would totter if it got less.
+"""
+
+WORK = 40_000
+"""Iterations times contacts that take a few milliseconds."""
 
 FIRST_ITERATIONS = 300
 """The same where nothing is known yet of the forces."""
@@ -31,8 +37,8 @@ FIRST_ITERATIONS = 300
 ACCURACY = 1e-6
 """Of what the acceleration scale does to velocities in a step: where the solver stops."""
 
-HIT_ITERATIONS = 25
-"""Of the solver in a step in which something hits, and again as long as something sinks."""
+HIT_ITERATIONS = 25, 1000
+"""The same in a step in which something hits, and again as long as something sinks."""
 
 HIT_ROUNDS = 4
 """So many times at most; once where it is only to be seen what else is run into."""
@@ -40,7 +46,7 @@ HIT_ROUNDS = 4
 OVERLAP = 5e-4
 """Of the length scale: sinking in by more is worth more work."""
 
-HIT_ACCURACY = 1e-3
+HIT_ACCURACY = 1e-5
 """Of the speed of what hits: where the solver stops then."""
 
 NEVER = 1e9
@@ -110,9 +116,12 @@ class PileStep:
         asked[0] = np.where(contacts.found.late, contacts.gap,
                             np.maximum(contacts.gap, 0.0)) / duration
         tolerance = ACCURACY * self._scales.acceleration * duration
-        iterations = ITERATIONS if self.forces.any() else FIRST_ITERATIONS
+        iterations = self._iterations(ITERATIONS)
+        if not self.forces.any():
+            iterations = max(iterations, FIRST_ITERATIONS)
         if self.hits.any():
-            tolerance, iterations = HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS
+            tolerance = HIT_ACCURACY * -float(self.speed.min())
+            iterations = self._iterations(HIT_ITERATIONS)
         for _ in range(rounds):
             self.forces, change = self._solved(kicked, asked, self.forces, tolerance, iterations)
             self.sinks = bool(self.hits.any()) and self._sinks(kicked + change)
@@ -209,7 +218,7 @@ class PileStep:
         velocity = self.contacts.scaled(self.end)
         forces, change = self._solved(
             velocity, asked, np.zeros(3 * self.contacts.rows.count),
-            HIT_ACCURACY * -float(self.speed.min()), HIT_ITERATIONS)
+            HIT_ACCURACY * -float(self.speed.min()), self._iterations(HIT_ITERATIONS))
         part = rebound_part(velocity, change, self.lost)
         self.lost -= part * float(change @ velocity + 0.5 * part * (change @ change))
         self.end = self.end.struck(np.arange(self._island.member_count),
@@ -227,6 +236,11 @@ class PileStep:
             iterations)
         self._island.world.work.solver_iterations += used
         return forces, contacts.rows.momentum(forces)
+
+    def _iterations(self, limits):
+        """Return how many iterations these contacts may take, within limits."""
+        fewest, most = limits
+        return min(max(fewest, WORK // max(1, len(self.speed))), most)
 
     def _resisted(self, linear, angular):
         """Return velocities (3, n) after friction against rolling and pivoting."""
