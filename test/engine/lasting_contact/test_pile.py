@@ -24,6 +24,7 @@ from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
+from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
 from rigid_sim_ros.engine.model import Material
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
 from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows
@@ -242,6 +243,23 @@ def test_blocks_multiply_as_a_matrix_does():
     matrix = np.concatenate(dense, axis=1).reshape(-1, 6 * slots)
     product = BlockRows(blocks, slots)
     velocity, force = random.normal(size=6 * slots), random.normal(size=len(matrix))
+    np.testing.assert_allclose(product.motion(velocity), matrix @ velocity, atol=1e-12)
+    np.testing.assert_allclose(product.momentum(force), matrix.T @ force, atol=1e-12)
+    np.testing.assert_allclose(product.response(force), matrix @ (matrix.T @ force), atol=1e-11)
+
+
+def test_contacts_by_themselves_multiply_as_a_matrix_does():
+    """Products by contact against the dense Jacobian; one body has several, one does not move."""
+    random = np.random.default_rng(0)
+    slots = np.array([(0, 1, 1, 2, 3), (1, 2, 2, 3, 0)])
+    rows = random.normal(size=(3, 12, 5))
+    matrix = np.zeros((3, 5, 4, 6))
+    for contact, (a, b) in enumerate(slots.T):
+        matrix[:, contact, a] = rows[:, :6, contact]
+        matrix[:, contact, b] = rows[:, 6:, contact]
+    matrix = matrix.reshape(15, 24)
+    product = PointRows(rows, slots, 4)
+    velocity, force = random.normal(size=24), random.normal(size=15)
     np.testing.assert_allclose(product.motion(velocity), matrix @ velocity, atol=1e-12)
     np.testing.assert_allclose(product.momentum(force), matrix.T @ force, atol=1e-12)
     np.testing.assert_allclose(product.response(force), matrix @ (matrix.T @ force), atol=1e-11)

@@ -46,6 +46,9 @@ PUSH_ITERATIONS = 15
 PUSHED = 3e-6
 """Of the length scale: overlap that is pushed out, to a third."""
 
+PUSHED_QUICK = 5e-4
+"""The same while something is quick, but for the steps before a test of who rests."""
+
 CLOSED = 6e-4
 """Of the length scale: gap of contacts that may hold what rests."""
 
@@ -109,7 +112,7 @@ class Pile:
         scales = island.scales(free)
         motion = island.gather(state)
         groups = np.full(island.member_count, -1)
-        if self.steps % TESTED_STEPS == 0:
+        if self._rest_is_next():
             groups, contacts = resting_members(
                 island, self.quiet, motion, free, scales, start, CLOSED * scales.length)
             if (groups >= 0).all():
@@ -124,6 +127,10 @@ class Pile:
         resting = undisturbed(island, scales, before, motion, groups)
         island.scatter(motion.stopped(resting), state)
         return closed, resting
+
+    def _rest_is_next(self):
+        """Return whether the next step begins with a test of who rests."""
+        return self.steps % TESTED_STEPS == 0
 
     def impulses(self):
         """Return keys (of the scene), points and impulses, (3, k) each, of the last step."""
@@ -149,20 +156,22 @@ class Pile:
         """
         island = self._island
         vector = self._vector
+        way = duration * island.closing(motion)
         if self.contacts is not None:
             self._sources = [self.impulses()]
             vector = self.contacts.vector
         if self._ahead is not None and same_poses(self._ahead[0], motion):
             found = self._ahead[1]
         else:
-            found = self._found(motion, scales, duration * island.closing(motion))
+            found = self._found(motion, scales, way)
         self._way = np.zeros(len(island.pairs.pairs_a))
         self.contacts = contacts = PileContacts(island.bodies, found, motion.orientation, vector)
         self._forces = contacts.row_forces(
             self._remembered(found.contacts, MATCH * scales.length))
-        pushed = PUSHED * scales.length
-        if (contacts.gap < -pushed).any():
-            motion = self._pushed_out(motion, free, pushed / 3, DEEP * scales.length, lost)
+        quick = (way > FAST * scales.length).any() and not self._rest_is_next()
+        pushed = PUSHED_QUICK if quick else PUSHED
+        if (contacts.gap < -pushed * scales.length).any():
+            motion = self._pushed_out(motion, free, scales, lost)
         return motion
 
     def _found(self, motion, scales, way):
@@ -185,9 +194,10 @@ class Pile:
         axes = self.contacts.axes
         return axes[:, 0] * world[0] + axes[:, 1] * world[1] + axes[:, 2] * world[2]
 
-    def _pushed_out(self, motion, free, allowed, deep, lost):
-        """Return the motion with overlaps of more than `allowed` [m] undone; see `_renew`."""
+    def _pushed_out(self, motion, free, scales, lost):
+        """Return the motion with overlaps undone, to a third of `PUSHED`; see `_renew`."""
         contacts, island = self.contacts, self._island
+        allowed = PUSHED / 3 * scales.length
         rows = np.zeros((3, len(contacts.gap)))
         rows[0] = contacts.gap + allowed
         force, _, _ = accelerated(
@@ -199,7 +209,7 @@ class Pile:
         raised = -((free.acceleration[:, :count] * linear).sum(axis=0)
                    / island.bodies.inverse_mass[:count]).sum()
         part = 1.0
-        if raised > lost and contacts.gap.min() > -deep:
+        if raised > lost and contacts.gap.min() > -DEEP * scales.length:
             part = lost / raised
         contacts.gap = contacts.gap + part * contacts.motion(contacts.rows.response(force))[0]
         return motion.moved(np.arange(count), part * linear, part * angular)
@@ -225,7 +235,8 @@ class Pile:
         if hit.any():
             self._note(hit, impulse, -step.speed, start + duration)
         end, closed = step.end, self.contacts.contacts.select(step.closed)
-        if (self._way > KEPT_WAY * scales.length).any():
+        if (self._way > KEPT_WAY * scales.length).any() or (
+                self._rest_is_next() and (self.contacts.gap < -PUSHED * scales.length).any()):
             end = self._renew(end, free, scales, duration, step.lost)
         return end, closed
 

@@ -23,8 +23,6 @@ tremor there is.
 
 import numpy as np
 
-from rigid_sim_ros.engine.solvers.blocks import POINTS
-
 MATCH = 0.2
 """Of the length scale: an old point this near to a new one is the same."""
 
@@ -52,8 +50,9 @@ class Impulses:
         rank = np.empty(len(starts), dtype=int)
         rank[order] = np.arange(len(starts))
         self._keys = keys[starts][order]
-        self._points = np.full((3, len(starts), POINTS[-1]), np.inf)
-        self._impulses = np.zeros((3, len(starts), POINTS[-1]))
+        room = sizes.max(initial=0)
+        self._points = np.full((3, len(starts), room), np.inf)
+        self._impulses = np.zeros((3, len(starts), room))
         self._points[:, rank[pairs], places] = points
         self._impulses[:, rank[pairs], places] = impulses
 

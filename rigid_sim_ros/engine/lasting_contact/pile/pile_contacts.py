@@ -18,8 +18,9 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
+from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import DenseRows, PointRows
 from rigid_sim_ros.engine.solvers.accelerated import Cones, largest_eigenvalue
-from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, FEW_POINTS, MANY_PAIRS, POINTS
+from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, MANY_PAIRS, POINTS
 from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
 
 DENSE = 500
@@ -30,35 +31,6 @@ _MARGIN = 1.15
 
 _ROUNDS = 3
 """Of the power method, from the vector of the contacts before."""
-
-
-class DenseRows:
-    """
-    The rows of few contacts; as `BlockRows`, and with the response as a matrix.
-
-    Parameters
-    ----------
-    rows : (3k, 6 slots)
-
-    """
-
-    def __init__(self, rows):
-        """See the class."""
-        self._rows = rows
-        self._response = rows @ rows.T
-        self.count = len(rows) // 3
-
-    def motion(self, velocity):
-        """Return how all rows move, (3k,), for scaled velocities, flat (6 slots,)."""
-        return self._rows @ velocity
-
-    def momentum(self, force):
-        """Return the scaled velocities, flat (6 slots,), that forces (3k,) make."""
-        return force @ self._rows
-
-    def response(self, force):
-        """Return the motion (3k,) that forces (3k,) make."""
-        return self._response @ force
 
 
 class PileContacts:
@@ -104,8 +76,7 @@ class PileContacts:
         self._bodies = bodies
         slots = np.minimum(np.stack((a, b)), members)
         self._places = np.arange(len(a))
-        self.rows = (self._dense(rows, slots) if len(a) * (members + 1) <= DENSE
-                     else self._blocks(rows, slots, a * bodies.count + b))
+        self.rows = self._rows(rows, slots, a * bodies.count + b)
         self._friction = np.zeros(self.rows.count)
         self._friction[self._places] = (
             mixed_friction(bodies.friction[a], bodies.friction[b])
@@ -116,6 +87,17 @@ class PileContacts:
     def without_friction(self):
         """Return `Cones` of the same contacts without friction."""
         return Cones(np.zeros_like(self._friction))
+
+    def _rows(self, rows, slots, keys):
+        """Return rows (3, k, 2, 6) in the form that is quickest for so many."""
+        count = len(keys)
+        if count * (self._members + 1) <= DENSE:
+            return self._dense(rows, slots)
+        starts = np.flatnonzero(np.diff(keys, prepend=-1))
+        if len(starts) < MANY_PAIRS:
+            return PointRows(rows.reshape(3, count, 12).transpose(0, 2, 1), slots,
+                             self._members + 1)
+        return self._blocks(rows, slots, starts)
 
     def _dense(self, rows, slots):
         """Return the rows as a matrix."""
@@ -128,12 +110,11 @@ class PileContacts:
         dense[:, :, -1] = 0.0
         return DenseRows(dense.reshape(3 * count, 6 * (self._members + 1)))
 
-    def _blocks(self, rows, slots, keys):
+    def _blocks(self, rows, slots, starts):
         """Return the rows as blocks, and note which flat point each contact is."""
-        starts = np.flatnonzero(np.diff(keys, prepend=-1))
-        sizes = np.diff(starts, append=len(keys))
+        sizes = np.diff(starts, append=slots.shape[1])
         blocks, begin, low = [], 0, 0
-        for room in POINTS if len(starts) >= MANY_PAIRS else FEW_POINTS:
+        for room in POINTS:
             fits = np.flatnonzero((sizes > low) & (sizes <= room))
             low = room
             if not len(fits):
