@@ -77,6 +77,11 @@ class Chunk:
             self.start_ns = time_ns
         self.message_count += 1
 
+    @property
+    def capacity(self):
+        """Bytes of memory it takes, however much is in it."""
+        return len(self._data)
+
     def data(self):
         """Return the records, a view."""
         return self._data[:self.size]

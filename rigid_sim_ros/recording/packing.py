@@ -18,8 +18,8 @@ from collections import deque
 
 from rigid_sim_ros.recording.chunk import Chunk, CHUNK_BYTES
 
-_MOST_SPARE = 32
-"""Chunks kept for use again: what comes while the disk confirms."""
+_MOST_SPARE_BYTES = 2**26
+"""Memory kept for use again: for what comes while the disk confirms."""
 
 
 class PackedChunk(Chunk):
@@ -108,7 +108,7 @@ class Packing:
         self.byte_count -= chunk.message_bytes
         if chunk.file_number == self._file_number:
             self._file_bytes += byte_count - chunk.size
-        if len(self._spare) < _MOST_SPARE:
+        if sum(spare.capacity for spare in self._spare) + chunk.capacity <= _MOST_SPARE_BYTES:
             self._spare.append(chunk)
 
     def _must_split(self, time_ns):

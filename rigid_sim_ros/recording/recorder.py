@@ -294,6 +294,8 @@ class Recorder:
                 self._phase = FAILED
                 self._error = f'recording to {self.path} stopped: {reason}'
                 self._dropped_count += self._packing.message_count
+                # whoever waits for room need not wait until the file is closed
+                self._condition.notify_all()
 
     def _drop_waiting(self):
         with self._condition:

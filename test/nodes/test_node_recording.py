@@ -118,9 +118,12 @@ def test_topics_of_other_names_are_read_replayed_and_played_as_what_they_are(tmp
         client.spin_until(publisher.get_subscription_count, 'a subscriber of /poses')
         message = interface('geometry_msgs/msg/TwistStamped')()
         message.header.frame_id, message.twist.linear.z = 'cube_3', 2.0
-        client.spin(0.3)
+        received = []
+        client.node.create_subscription(
+            interface('sensor_msgs/msg/MultiDOFJointState'), '/all/poses', received.append, 10)
+        client.spin_until(lambda: received, 'a state')
         publisher.publish(message)
-        client.spin(0.3)
+        client.spin_until(lambda: received[-1].twist[2].linear.z > 1.0, 'the command')
         assert process.stop(signal.SIGINT)[0] == 0
     recorded = recording.read(tmp_path / 'bag')
     assert recorded.linear_velocity[-1, 2, 2] > 1.0 > recorded.linear_velocity[0, 2, 2]

@@ -81,6 +81,18 @@ def test_a_chunk_is_closed_when_it_is_full_and_used_again():
     assert records(third) == [(1, 8, 8, b'next')]
 
 
+def test_memory_for_use_again_is_bounded():
+    work = packing.Packing(set(), b'', 0)
+    for number in range(3):
+        work.add(1, number, bytes(chunk.CHUNK_BYTES))
+        work.add(1, number, bytes(packing._MOST_SPARE_BYTES // 5))
+    for part in work.take():
+        work.give_back(part, part.size)
+    spare = sum(part.capacity for part in work._spare)
+    assert 0 < spare <= packing._MOST_SPARE_BYTES
+    assert (work.message_count, work.byte_count) == (0, 0)
+
+
 def test_a_message_larger_than_a_chunk_is_whole():
     data = random.Random(1).randbytes(3 * chunk.CHUNK_BYTES)
     assert packed([(1, 0, b'before'), (1, 1, data)]) == [

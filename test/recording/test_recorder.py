@@ -205,6 +205,14 @@ def test_a_full_queue_can_make_the_writer_wait_instead(tmp_path, run, monkeypatc
     assert (state.message_count, state.dropped_count) == (84, 0)
 
 
+def test_who_waits_for_a_disk_that_fails_is_let_go_and_all_is_counted(tmp_path, run, monkeypatch):
+    recorder = run.recorder(tmp_path / 'bag', queue_bytes=5000, when_full=recording.WAIT)
+    Disk(monkeypatch, stall=0.2, room=0)
+    run.write(recorder, 0, 100)
+    state = recorder.close()
+    assert (state.phase, state.message_count, state.dropped_count) == ('failed', 0, 210)
+
+
 def test_a_message_larger_than_the_queue_is_dropped_and_not_waited_for(tmp_path, run):
     with run.recorder(tmp_path / 'bag', queue_bytes=5000, when_full=recording.WAIT) as recorder:
         recorder.write('/rigid_sim/scene', 0, messages.encode_string('x' * 6000))
