@@ -135,6 +135,15 @@ def test_a_guess_changes_nothing():
         np.testing.assert_allclose(solve(problem, guess).force, force, atol=1e-10)
 
 
+def test_what_a_solution_gives_to_start_from_leaves_little_to_do():
+    """The same problem again takes one linear system, and the force is the same."""
+    problem = problem_of(CORNERS, (1.0, 0.3, -0.4), (0.1, -0.2, 3.0), 0.3)
+    first = solve(problem)
+    again = solve(problem, first.start)
+    assert again.iterations == 1 < first.iterations
+    np.testing.assert_allclose(again.force, first.force, atol=1e-10)
+
+
 def test_projected_gradient_finds_the_motion():
     """The solver of piles meets the same motion, here with redundant contacts."""
     problem = problem_of(CORNERS, (1.0, 0.3, -0.4), (0.1, -0.2, 3.0), 0.3)

@@ -118,22 +118,22 @@ class Near:
         if bias is not None:
             free += bias
         guess = self._remembered(half)
-        impulse = np.zeros((3, count))
+        impulse, start = np.zeros((2, 3, count))
         closing = free[0, which] < 0.0
         if guess is not None:
             closing |= guess[0, which] > 0.0
         rounding = -canonical.ACCURACY * float(np.abs(free[:, which]).max())
         while closing.any():
             for group in self.groups(which[closing]):
-                impulse[:, group] = self._solved(free, group, slip, guess)
+                impulse[:, group], start[:, group] = self._solved(free, group, slip, guess)
             # many contacts are not reached: who is left out has to open by itself
             after = free[0] + self._response[:count] @ impulse.ravel()
             overlooked = ~closing & (after[which] < rounding)
             if not overlooked.any():
                 break
             closing |= overlooked
-            guess = impulse
-        self.island.impulses[half] = self.scene_pairs, self.rows.world(impulse.ravel())
+            guess = start
+        self.island.impulses[half] = self.scene_pairs, self.rows.world(start.ravel())
         struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
         return self._resisted(struck, impulse) if self.island.resists_spin else struck
 
@@ -161,7 +161,7 @@ class Near:
         return self.rows.components(world).reshape(3, -1)
 
     def _solved(self, free, group, slip, guess):
-        """Return the impulses (3, l) of contacts that act on each other."""
+        """Return (impulses (3, l), what to start from) of contacts that act on each other."""
         count = self.count
         rows = np.concatenate((group, group + count, group + 2 * count))
         response = self._response
@@ -176,7 +176,7 @@ class Near:
             guess = guess if guess.any() else None
         solution = solve(problem, guess)
         self.island.world.work.solver_iterations += solution.iterations
-        return solution.force.reshape(3, -1)
+        return solution.force.reshape(3, -1), solution.start.reshape(3, -1)
 
     def _factor(self, group, rows):
         """Return the `factor` of the problem of contacts (l,) int with rows (3l,) int, or None."""

@@ -51,11 +51,11 @@ def solve(problem, guess=None, accuracy=canonical.ACCURACY):
         solution = solve_frictionless(problem, accuracy)
         if solution is not None:
             return solution
-    force, iterations = solve_newton(problem, guess, accuracy)
-    if force is None:
+    solution = solve_newton(problem, guess, accuracy)
+    if solution.force is None:
         force, used = _solve_accelerated(problem)
-        iterations += used
-    return Solution(force, iterations)
+        solution = Solution(force, solution.iterations + used, force)
+    return solution
 
 
 def _solve_one(problem):
@@ -64,9 +64,13 @@ def _solve_one(problem):
     free, friction, floor = problem.free.tolist(), problem.friction.item(), problem.floor.item()
     slip = problem.slip[:, 0].tolist()
     if slip == [0.0, 0.0]:
-        return Solution(np.array(solve_one(response, free, friction, floor)), 1)
+        force = np.array(solve_one(response, free, friction, floor))
+        return Solution(force, 1, force)
     force = slide_one(response, free[0], friction, slip) if floor == 0.0 else None
-    return None if force is None else Solution(np.array(force), 1)
+    if force is None:
+        return None
+    force = np.array(force)
+    return Solution(force, 1, force)
 
 
 def _solve_accelerated(problem):

@@ -17,28 +17,50 @@ The conditions of contacts as equations, with their derivatives (Alart and Curni
 
 Each condition is 'force equals its projection on what is allowed', with the normal force allowed
 above its floor and the friction inside its disc. For few contacts in plain floats, one after the
-other, which is three times faster than arrays.
-
-For each contact there are rows: 3 residuals, 5 derivatives by motion, 7 by force, whose places in
-the matrices are those of `places`.
+other, which takes a third of the time of arrays.
 """
 
-from functools import lru_cache
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
-FEW = 12
+FEW = 20
 """Up to so many contacts plain floats are faster (measured)."""
 
 _TINY = np.finfo(float).tiny
 
 
+class Derivatives(NamedTuple):
+    """
+    Derivatives of k contacts' residuals by their own motion and force; what is not here is zero.
+
+    Rows are in the order of a vector (3k,): normals, first and second tangents.
+    """
+
+    own_motion: np.ndarray
+    """(3k,): of each row by its own motion."""
+
+    own_force: np.ndarray
+    """(3k,)"""
+
+    cross_motion: np.ndarray
+    """(k,): of the first tangent by the second, and the other way round; None if all are zero."""
+
+    cross_force: np.ndarray
+    """(k,), or None with those by motion."""
+
+    normal_force: np.ndarray
+    """(2, k): of both tangents by the normal force, or None if all are zero."""
+
+
 def equations_of(problem, diagonal):
     """Return the equations of a `ContactProblem`, whose response has this diagonal (3, k)."""
-    stiffness = np.stack((diagonal[0], np.maximum(diagonal[1], diagonal[2])))
+    steps = np.empty((2, problem.count))
+    steps[0] = diagonal[0]
+    np.maximum(diagonal[1], diagonal[2], out=steps[1])
     kind = FewEquations if problem.count <= FEW else ManyEquations
-    return kind(1 / stiffness, problem.friction, problem.floor, problem.slip)
+    return kind(1 / steps, problem.friction, problem.floor, problem.slip)
 
 
 class FewEquations:
@@ -59,24 +81,51 @@ class FewEquations:
         self._constants = list(zip(*steps.tolist(), friction.tolist(), floor.tolist(),
                                    *slip.tolist()))
 
-    def evaluate(self, force, motion):
-        """Return (rows (15, k), residual (3k,), its size in units of motion)."""
-        count = len(self._constants)
-        forces, motions = force.tolist(), motion.tolist()
-        rows, size = [], 0.0
-        for contact, constants in enumerate(self._constants):
-            row = linearise(forces[contact::count], motions[contact::count], constants)
-            rows.append(row)
-            normal = row[0] / constants[0]
-            first, second = row[1] / constants[1], row[2] / constants[1]
-            size += normal * normal + first * first + second * second
-        rows = np.array(rows).T
-        return rows, rows[:3].ravel(), sqrt(size)
+    def residual(self, force, motion):
+        """Return what is left of the conditions, (3k,), and its size in units of motion."""
+        heads, firsts, seconds, size = [], [], [], 0.0
+        for constants, normal, first, second, motion_n, motion_1, motion_2 in zip(
+                self._constants, *_parts(force, motion)):
+            step_n, step_t, friction, floor, slip_1, slip_2 = constants
+            head = step_n * motion_n
+            if head > normal - floor:
+                head = normal - floor
+            limit = friction * normal if normal > 0.0 else 0.0
+            if slip_1 or slip_2:
+                first += limit * slip_1
+                second += limit * slip_2
+            else:
+                change_1, change_2 = step_t * motion_1, step_t * motion_2
+                target_1, target_2 = first - change_1, second - change_2
+                length = sqrt(target_1 * target_1 + target_2 * target_2)
+                if length <= limit:
+                    first, second = change_1, change_2
+                else:
+                    share = limit / length
+                    first -= share * target_1
+                    second -= share * target_2
+            heads.append(head)
+            firsts.append(first)
+            seconds.append(second)
+            head /= step_n
+            size += head * head + (first * first + second * second) / (step_t * step_t)
+        return np.array(heads + firsts + seconds), sqrt(size)
+
+    def derivatives(self, force, motion):
+        """Return the `Derivatives` of the residual."""
+        return _derivatives([_derivatives_of(*each) for each in zip(
+            self._constants, *_parts(force, motion))])
 
     def sticking(self, motion):
-        """Return rows (15, k) in which closed contacts stick unless known to slide."""
-        return np.array([sticking(*each) for each in zip(
-            motion.reshape(3, -1).T.tolist(), self._constants)]).T
+        """
+        Return (residual (3k,), `Derivatives`) if closed contacts stick unless known to slide.
+
+        The motion is that of the floor; closed is what would close, or has a floor.
+        """
+        normals, firsts, seconds = motion.reshape(3, -1).tolist()
+        each = [_sticking(*one) for one in zip(self._constants, normals, firsts, seconds)]
+        residual = np.array([row for row, _ in each]).T.ravel()
+        return residual, _derivatives([row for _, row in each])
 
 
 class ManyEquations(FewEquations):
@@ -90,105 +139,104 @@ class ManyEquations(FewEquations):
         slips = slip.any(axis=0)
         self._slips = slips if slips.any() else None
 
-    def evaluate(self, force, motion):
-        """Return (rows (15, k), residual (3k,), its size in units of motion)."""
-        rows = self._linearise(force.reshape(3, -1), motion.reshape(3, -1))
-        residual = rows[:3]
+    def residual(self, force, motion):
+        """Return what is left of the conditions, (3k,), and its size in units of motion."""
+        force, change = force.reshape(3, -1), self._steps * motion.reshape(3, -1)
+        limit, unit, _, slides = self._projected(force, change)
+        residual = np.empty_like(force)
+        np.minimum(change[0], force[0] - self._floor, out=residual[0])
+        residual[1:] = np.where(slides, force[1:] - limit * unit, change[1:])
         weighted = (residual / self._steps).ravel()
-        return rows, residual.ravel(), sqrt(weighted @ weighted)
+        return residual.ravel(), sqrt(weighted @ weighted)
 
-    def _linearise(self, force, motion):
-        """Return the rows: `linearise` of all."""
-        steps = self._steps
-        target = force - steps * motion
-        closed = target[0] > self._floor
-        pressed = force[0] > 0.0
-        limit = np.where(pressed, self._friction * force[0], 0.0)
-        length = np.sqrt(target[1] * target[1] + target[2] * target[2])
-        slides = length > limit
-        length = np.maximum(length, _TINY)
-        turn, unit = np.where(slides, limit / length, 1.0), target[1:] / length
-        if self._slips is not None:
-            slides = slides | self._slips
-            unit = np.where(self._slips, -self._slip, unit)
-            turn = np.where(self._slips, 0.0, turn)
-        rows = np.empty((15, len(limit)))
-        rows[0] = np.where(closed, steps[0] * motion[0], force[0] - self._floor)
-        rows[1:3] = np.where(slides, force[1:] - limit * unit, steps[1:] * motion[1:])
-        rows[3], rows[8] = np.where(closed, steps[0], 0.0), ~closed
+    def derivatives(self, force, motion):
+        """Return the `Derivatives` of the residual."""
+        force, steps = force.reshape(3, -1), self._steps
+        change = steps * motion.reshape(3, -1)
+        closed = force[0] - self._floor > change[0]
+        _, unit, turn, slides = self._projected(force, change)
         one, two = unit
         # derivative of the projection by its target: across the direction only
         turn_11 = np.where(slides, turn * two * two, 1.0)
         turn_12 = np.where(slides, -turn * one * two, 0.0)
         turn_22 = np.where(slides, turn * one * one, 1.0)
-        rows[4], rows[7] = steps[1] * turn_11, steps[1] * turn_22
-        rows[5] = rows[6] = steps[1] * turn_12
-        rows[9], rows[12] = 1.0 - turn_11, 1.0 - turn_22
-        rows[10] = rows[11] = -turn_12
-        rows[13:] = np.where(slides & pressed, -self._friction * unit, 0.0)
-        return rows
+        grows = np.where(slides & (force[0] > 0.0), -self._friction, 0.0)
+        return Derivatives(
+            np.concatenate((np.where(closed, steps[0], 0.0), steps[1] * turn_11,
+                            steps[1] * turn_22)),
+            np.concatenate((np.where(closed, 0.0, 1.0), 1.0 - turn_11, 1.0 - turn_22)),
+            steps[1] * turn_12, -turn_12, grows * unit)
+
+    def _projected(self, force, change):
+        """Return the discs' limits, directions (2, k) in them, limit per length, who slides."""
+        limit = self._friction * np.maximum(force[0], 0.0)
+        target = force[1:] - change[1:]
+        length = np.sqrt(target[0] * target[0] + target[1] * target[1])
+        slides = length > limit
+        length = np.maximum(length, _TINY)
+        unit, turn = target / length, limit / length
+        if self._slips is not None:
+            slides = slides | self._slips
+            unit = np.where(self._slips, -self._slip, unit)
+            turn = np.where(self._slips, 0.0, turn)
+        return limit, unit, turn, slides
 
 
-def linearise(force, motion, constants):
+def _parts(force, motion):
+    """Return the three components of force, then those of motion, as lists of k floats."""
+    count = len(force) // 3
+    force, motion = force.tolist(), motion.tolist()
+    return (force[:count], force[count:2 * count], force[2 * count:],
+            motion[:count], motion[count:2 * count], motion[2 * count:])
+
+
+def _derivatives(rows):
+    """Return `Derivatives` of k rows, each in the order of `_derivatives_of`."""
+    motion_n, motion_1, motion_2, cross, force_n, force_1, force_2, cross_force, *by_normal = zip(
+        *rows)
+    turns = any(cross)
+    return Derivatives(np.array(motion_n + motion_1 + motion_2),
+                       np.array(force_n + force_1 + force_2),
+                       np.array(cross) if turns else None,
+                       np.array(cross_force) if turns else None,
+                       np.array(by_normal) if any(by_normal[0]) or any(by_normal[1]) else None)
+
+
+def _derivatives_of(constants, normal, first, second, motion_n, motion_1, motion_2):
     """
-    Return one contact's equations: 3 residuals, 5 derivatives by motion, 7 by force.
+    Return the derivatives of one contact: four by motion, six by force.
 
-    The places they have in the matrices are those of `places`.
+    By motion and by force alike: n by n, 1 by 1, 2 by 2, 1 by 2; last 1 and 2 by the normal force.
     """
-    normal, first, second = force
-    motion_n, motion_1, motion_2 = motion
     step_n, step_t, friction, floor, slip_1, slip_2 = constants
-    if normal - floor > step_n * motion_n:
-        head, motion_nn, force_nn = step_n * motion_n, step_n, 0.0
-    else:
-        head, motion_nn, force_nn = normal - floor, 0.0, 1.0
+    motion_nn, force_nn = (step_n, 0.0) if normal - floor > step_n * motion_n else (0.0, 1.0)
     limit, grows = (friction * normal, friction) if normal > 0.0 else (0.0, 0.0)
     if slip_1 or slip_2:
-        return (head, first + limit * slip_1, second + limit * slip_2,
-                motion_nn, 0.0, 0.0, 0.0, 0.0,
-                force_nn, 1.0, 0.0, 0.0, 1.0, grows * slip_1, grows * slip_2)
+        return (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0, grows * slip_1, grows * slip_2)
     target_1, target_2 = first - step_t * motion_1, second - step_t * motion_2
     length = sqrt(target_1 * target_1 + target_2 * target_2)
     if length <= limit:
-        return (head, step_t * motion_1, step_t * motion_2,
-                motion_nn, step_t, 0.0, 0.0, step_t,
-                force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0
     unit_1, unit_2 = target_1 / length, target_2 / length
     # derivative of the projection by its target: across the direction only
     turn = limit / length
     turn_11, turn_22 = turn * unit_2 * unit_2, turn * unit_1 * unit_1
     turn_12 = -turn * unit_1 * unit_2
-    return (head, first - limit * unit_1, second - limit * unit_2,
-            motion_nn, step_t * turn_11, step_t * turn_12, step_t * turn_12, step_t * turn_22,
-            force_nn, 1.0 - turn_11, -turn_12, -turn_12, 1.0 - turn_22,
-            -grows * unit_1, -grows * unit_2)
+    return (motion_nn, step_t * turn_11, step_t * turn_22, step_t * turn_12,
+            force_nn, 1.0 - turn_11, 1.0 - turn_22, -turn_12, -grows * unit_1, -grows * unit_2)
 
 
-def sticking(motion, constants):
-    """Return `linearise` at the floor's motion for a contact that sticks if it is closed."""
-    motion_n, motion_1, motion_2 = motion
+def _sticking(constants, motion_n, motion_1, motion_2):
+    """Return (residual (3,), `_derivatives_of`) one contact that sticks if it is closed."""
     step_n, step_t, friction, floor, slip_1, slip_2 = constants
     closes = motion_n < 0.0
-    normal = (step_n * motion_n, step_n, 0.0) if closes else (0.0, 0.0, 1.0)
-    head, motion_nn, force_nn = normal
+    head, motion_nn, force_nn = (step_n * motion_n, step_n, 0.0) if closes else (0.0, 0.0, 1.0)
     limit = friction * floor
     if not closes and floor <= 0.0:
         slip_1 = slip_2 = friction = 0.0
     elif not (slip_1 or slip_2):
-        return (head, step_t * motion_1, step_t * motion_2, motion_nn, step_t, 0.0, 0.0, step_t,
-                force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return (head, limit * slip_1, limit * slip_2, motion_nn, 0.0, 0.0, 0.0, 0.0,
-            force_nn, 1.0, 0.0, 0.0, 1.0, friction * slip_1, friction * slip_2)
-
-
-@lru_cache(maxsize=64)
-def places(count):
-    """Return where derivatives by motion (5, k) and force (7, k) go in flat (3k, 3k) matrices."""
-    contact = np.arange(count)
-
-    def place(row, column):
-        return (row * count + contact) * 3 * count + column * count + contact
-
-    tangential = [place(1, 1), place(1, 2), place(2, 1), place(2, 2)]
-    return (np.array([place(0, 0), *tangential]),
-            np.array([place(0, 0), *tangential, place(1, 0), place(2, 0)]))
+        return ((head, step_t * motion_1, step_t * motion_2),
+                (motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0))
+    return ((head, limit * slip_1, limit * slip_2),
+            (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0,
+             friction * slip_1, friction * slip_2))

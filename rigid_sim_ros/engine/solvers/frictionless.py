@@ -48,7 +48,7 @@ def solve_frictionless(problem, accuracy):
         return None
 
     force = canonical.refine(solve, problem, compliance, accuracy)
-    return None if force is None else Solution(force, iterations)
+    return None if force is None else Solution(force, iterations, force)
 
 
 def _closing(matrix, free, floor, closed):

@@ -53,7 +53,7 @@ def solve_guessed(problem, closed, accuracy):
         return force if _holds(problem, closed, force, free, compliance) else None
 
     force = canonical.refine(solve, problem, compliance, accuracy)
-    return None if force is None else Solution(force, passes)
+    return None if force is None else Solution(force, passes, force)
 
 
 def _prescribe(problem, closed, matrix):

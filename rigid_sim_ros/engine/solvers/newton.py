@@ -22,7 +22,7 @@ above its floor and the friction inside its disc. The derivative of force less p
 
 with both matrices block-diagonal, a contact's 3 x 3 each.
 
-The inverse of one iteration is kept for the next as long as that gains three digits. The first
+The system of one iteration is kept for the next as long as that gains three digits. The first
 guess is that all closed contacts stick, which one linear system tells. Once it is known who sticks
 and who slides, refining the compliance away (see `canonical`) takes a product each time.
 """
@@ -32,6 +32,7 @@ import numpy as np
 from rigid_sim_ros.engine.solvers import canonical
 from rigid_sim_ros.engine.solvers.contact_equations import equations_of
 from rigid_sim_ros.engine.solvers.newton_systems import DenseSystem, FactoredSystem
+from rigid_sim_ros.engine.solvers.problem import Solution
 
 MAX_ITERATIONS = 20
 """From nothing 2 to 10 do; what has not converged by then mostly goes in circles."""
@@ -43,10 +44,13 @@ Lucidi 1986), which breaks many circles; to go down always would get stuck more 
 """
 
 _GAIN = 1e-3
-"""An inverse is kept while it shrinks the residual to this part or less."""
+"""A system is kept while it shrinks the residual to this part or less."""
 
-_FACTORED = 1.7
-"""A response is taken in factors if it has so many times more rows than these have columns."""
+_FACTORED, _FACTORED_ROWS = 1.7, 90
+"""
+A response is taken in factors if it has so many times more rows than these have columns, and so
+many rows (measured).
+"""
 
 _STALLED = 0.5
 """A pass that changes the force by more than this part of what the last did gets nowhere."""
@@ -65,7 +69,7 @@ Of 332 problems of 8 to 18 contacts that act on each other (ten tumbled cubes th
 
 def solve_newton(problem, guess, accuracy):
     """
-    Return (force, iterations) of a `ContactProblem`: the canonical force (3k,), or None.
+    Return the `Solution` of a `ContactProblem`, with the canonical force, or with None.
 
     The guess (3k,) or None saves time; iterations are linear systems solved. Where Newton's method
     does not get to the end the force is that with the least compliance it came down to.
@@ -73,11 +77,9 @@ def solve_newton(problem, guess, accuracy):
     compliance = canonical.compliance_of(problem)
     newton = Newton(problem, compliance)
     best = newton.refined(guess, accuracy)
-    if best is None and guess is not None:
-        best = newton.refined(None, accuracy)
     used = newton.iterations
     if best is not None:
-        return best, used
+        return Solution(best, used, newton.first)
     for ladder in _LADDERS:
         force = newton.floor
         for step in (*ladder, canonical.COMPLIANCE):
@@ -88,8 +90,9 @@ def solve_newton(problem, guess, accuracy):
                 break
             best = force
         else:
-            return newton.refined(force, accuracy), used
-    return best, used
+            best = newton.refined(force, accuracy)
+            return Solution(best, used, newton.first)
+    return Solution(best, used, best)
 
 
 class Newton:
@@ -107,6 +110,8 @@ class Newton:
         """See the class."""
         self.iterations = 0
         """Linear systems made so far."""
+        self.first = None
+        """The last force (3k,) with the whole compliance, or None."""
         self._free = problem.free
         self._compliance = compliance
         count = self._count = problem.count
@@ -120,11 +125,12 @@ class Newton:
         self._equations = equations_of(problem, diagonal.reshape(3, count))
         factor = problem.factor
         self._factor = None
-        if factor is not None and factor.shape[1] * _FACTORED <= 3 * count:
+        if (factor is not None and 3 * count >= _FACTORED_ROWS
+                and factor.shape[1] * _FACTORED <= 3 * count):
             self._factor = factor
         # the rounding of matrix @ force is a floor below which no residual gets
         self._rounding = 5e-16 * count ** 1.5 * float(diagonal.max())
-        self._system = self._rows = None
+        self._system = self._at = None
 
     def refined(self, guess, accuracy):
         """
@@ -135,8 +141,8 @@ class Newton:
         """
         tolerance = accuracy * self._scale
         reference, done = self.floor, False
-        force = self._iterate(reference, self._start() if guess is None else guess,
-                              max(tolerance, _SETTLED * self._scale))
+        force = self.first = self._iterate(reference, self._start() if guess is None else guess,
+                                           max(tolerance, _SETTLED * self._scale))
         for _ in range(canonical.MAX_PASSES):
             if force is None or done:
                 break
@@ -161,28 +167,36 @@ class Newton:
         free = self._free - self._compliance * reference
         residual, size = self._evaluate(free, force)
         sizes = []
-        for _ in range(MAX_ITERATIONS):
-            if size <= tolerance + self._rounding * float(np.abs(force).max()):
-                # the last digits, unseen
-                return force if self._system is None else force - self._system.solve(residual)
-            if (self._system is None or sizes and size > _GAIN * sizes[-1]) and (
-                    not self._prepare(self._rows)):
-                return None
-            sizes.append(size)
-            change = self._system.solve(residual)
-            largest = max(sizes[-_WINDOW:])
-            for _ in range(_HALVINGS):
-                residual, size = self._evaluate(free, force - change)
-                if size < largest:
-                    break
-                change *= 0.5
-            force = force - change
+        try:
+            for _ in range(MAX_ITERATIONS):
+                if self._is_solved(size, tolerance):
+                    # the last digits, unseen
+                    return force if self._system is None else force - self._system.solve(residual)
+                if self._system is None or sizes and size > _GAIN * sizes[-1]:
+                    self._prepare(self._equations.derivatives(*self._at))
+                sizes.append(size)
+                change = self._system.solve(residual)
+                largest = max(sizes[-_WINDOW:])
+                for _ in range(_HALVINGS):
+                    trial = force - change
+                    residual, size = self._evaluate(free, trial)
+                    if size < largest:
+                        break
+                    change *= 0.5
+                force = trial
+        except np.linalg.LinAlgError:
+            pass
         return None
+
+    def _is_solved(self, size, tolerance):
+        """Return whether a residual of a size is as small as it should be or can be."""
+        return size <= tolerance or size <= tolerance + self._rounding * float(
+            np.abs(self._at[0]).max())
 
     def _evaluate(self, free, force):
         """Return the residual (3k,) of a force, and its size in units of motion."""
-        self._rows, residual, size = self._equations.evaluate(force, free + self._matrix @ force)
-        return residual, size
+        self._at = force, free + self._matrix @ force
+        return self._equations.residual(*self._at)
 
     def _extrapolated(self, force, change, tolerance):
         """
@@ -195,17 +209,20 @@ class Newton:
         is all that can be done.
         """
         reference = force
-        if self._system is None and not self._prepare(self._rows):
-            return reference, force, False
+        if self._system is None:
+            self._prepare(self._equations.derivatives(*self._at))
         size = float(np.abs(change).max())
-        for _ in range(canonical.MAX_PASSES):
-            change = self._system.solve(self._system.of_motion(self._compliance * change))
-            reference, force = force, force + change
-            before, size = size, float(np.abs(change).max())
-            if self._compliance * size <= tolerance:
-                break
-            if size > _STALLED * before:
-                return reference, force, True
+        try:
+            for _ in range(canonical.MAX_PASSES):
+                change = self._system.solve(self._system.of_motion(self._compliance * change))
+                reference, force = force, force + change
+                before, size = size, float(np.abs(change).max())
+                if self._compliance * size <= tolerance:
+                    break
+                if size > _STALLED * before:
+                    return reference, force, True
+        except np.linalg.LinAlgError:
+            pass
         return reference, force, False
 
     def _start(self):
@@ -213,19 +230,17 @@ class Newton:
         motion = self._free
         if self.floor.any():
             motion = motion + self._matrix @ self.floor - self._compliance * self.floor
-        rows = self._equations.sticking(motion)
-        if not self._prepare(rows):
-            return self.floor
-        return self.floor - self._system.solve(rows[:3].ravel())
-
-    def _prepare(self, rows):
-        """Make the linear system in which contacts have these rows; return whether it could be."""
-        self.iterations += 1
+        residual, derivatives = self._equations.sticking(motion)
+        self._prepare(derivatives)
         try:
-            if self._factor is None:
-                self._system = DenseSystem(rows, self._matrix)
-            else:
-                self._system = FactoredSystem(rows, self._factor, self._compliance)
+            return self.floor - self._system.solve(residual)
         except np.linalg.LinAlgError:
-            return False
-        return True
+            return self.floor
+
+    def _prepare(self, derivatives):
+        """Make the linear system in which the residual has these derivatives."""
+        self.iterations += 1
+        if self._factor is None:
+            self._system = DenseSystem(derivatives, self._matrix)
+        else:
+            self._system = FactoredSystem(derivatives, self._factor, self._compliance)

@@ -13,47 +13,70 @@
 # limitations under the License.
 
 """
-The linear systems of Newton's method on contact conditions, ready to be solved many times.
+The linear systems of Newton's method on contact conditions.
 
 A system is by_force + by_motion @ (response + compliance), with both matrices block-diagonal, a
-contact's 3 x 3 each, as `contact_equations` gives them.
+contact's 3 x 3 each, as `contact_equations.Derivatives` gives them. Most are solved once, the last
+of a problem five times or so: a large one is inverted when it is asked for the second time.
 """
 
 import numpy as np
 
-from rigid_sim_ros.engine.solvers.contact_equations import places
+_SMALL = 24
+"""Rows up to which a system is inverted at once (measured)."""
 
 
 class DenseSystem:
     """
-    A system as one matrix, which is inverted.
+    A system as one matrix.
 
     Parameters
     ----------
-    rows : (15, k)
-        See `contact_equations.linearise`.
+    derivatives : contact_equations.Derivatives
     matrix : (3k, 3k)
         The response with its compliance.
 
     """
 
-    def __init__(self, rows, matrix):
-        """Raise LinAlgError if it is singular."""
-        count = rows.shape[1]
-        motion_places, force_places = places(count)
-        self._by_motion = np.zeros((3 * count, 3 * count))
-        by_force = np.zeros((3 * count, 3 * count))
-        self._by_motion.ravel()[motion_places] = rows[3:8]
-        by_force.ravel()[force_places] = rows[8:]
-        self._inverse = np.linalg.inv(self._by_motion @ matrix + by_force)
+    def __init__(self, derivatives, matrix):
+        """See the class."""
+        size = len(matrix)
+        count = size // 3
+        own, own_force, cross, cross_force, by_normal = derivatives
+        self._count, self._own, self._cross = count, own, cross
+        system = self._system = own[:, None] * matrix
+        flat = system.ravel()
+        flat[::size + 1] += own_force
+        first, second = count * size, 2 * count * size
+        if cross is not None:
+            cross = cross[:, None]
+            system[count:2 * count] += cross * matrix[2 * count:]
+            system[2 * count:] += cross * matrix[count:2 * count]
+            flat[first + 2 * count:second:size + 1] += cross_force
+            flat[second + count::size + 1] += cross_force
+        if by_normal is not None:
+            flat[first:second:size + 1] += by_normal[0]
+            flat[second::size + 1] += by_normal[1]
+        # a small one is inverted in the time in which it is solved
+        self._is_spared, self._inverse = size > _SMALL, None
 
     def solve(self, residual):
-        """Return the change of force (3k,) that makes a residual."""
+        """Return the change of force (3k,) that makes a residual, or raise LinAlgError."""
+        if self._is_spared:
+            self._is_spared = False
+            return np.linalg.solve(self._system, residual)
+        if self._inverse is None:
+            self._inverse = np.linalg.inv(self._system)
         return self._inverse @ residual
 
     def of_motion(self, motion):
         """Return the residual (3k,) that a motion makes."""
-        return self._by_motion @ motion
+        residual = self._own * motion
+        if self._cross is not None:
+            count = self._count
+            residual[count:2 * count] += self._cross * motion[2 * count:]
+            residual[2 * count:] += self._cross * motion[count:2 * count]
+        return residual
 
 
 class FactoredSystem:
@@ -65,8 +88,7 @@ class FactoredSystem:
 
     Parameters
     ----------
-    rows : (15, k)
-        As for `DenseSystem`.
+    derivatives : contact_equations.Derivatives
     factor : (3k, n)
         See `ContactProblem`.
     compliance : float
@@ -74,28 +96,32 @@ class FactoredSystem:
 
     """
 
-    def __init__(self, rows, factor, compliance):
+    def __init__(self, derivatives, factor, compliance):
         """Raise LinAlgError if a contact by itself is singular; never with a compliance."""
-        self._slopes = rows[3:8]
-        nn, t11, t12, t21, t22 = rows[8:13] + compliance * rows[3:8]
-        self._pull = rows[13:]
-        determinant = t11 * t22 - t12 * t21
-        if not nn.all() or not determinant.all():
+        own, own_force, cross, cross_force, by_normal = derivatives
+        if cross is None:
+            cross = cross_force = np.zeros(len(own) // 3)
+        self._own, self._cross = own.reshape(3, -1, 1), cross[:, None]
+        self._pull = 0.0 if by_normal is None else by_normal[:, :, None]
+        normal, t11, t22 = (own_force + compliance * own).reshape(3, -1)
+        t12 = cross_force + compliance * cross
+        determinant = t11 * t22 - t12 * t12
+        if not normal.all() or not determinant.all():
             raise np.linalg.LinAlgError
-        self._normal = 1 / nn
-        self._tangential = np.stack((t22, -t12, -t21, t11)) / determinant
+        self._normal = 1 / normal[:, None]
+        self._tangential = (np.array((t22, -t12, t11)) / determinant)[:, :, None]
         self._factor = factor
-        count, size = rows.shape[1], factor.shape[1]
+        count, size = len(cross), factor.shape[1]
         # (3, k) of rows of the factor, as columns of residuals
-        self._spread = self._without_response(self._of_motion(factor.reshape(3, count, size)))
-        self._spread = self._spread.reshape(3 * count, size)
+        spread = self._without_response(self._of_motion(factor.reshape(3, count, size)))
+        self._spread = spread.reshape(3 * count, size)
         self._matrix = factor.T @ self._spread
         self._matrix.ravel()[::size + 1] += 1.0
 
     def solve(self, residual):
         """Return the change of force (3k,) that makes a residual."""
         alone = self._without_response(residual.reshape(3, -1, 1)).ravel()
-        # most systems are solved once or twice, which takes less than to invert them
+        # less than to invert it, as the products around it take as long
         return alone - self._spread @ np.linalg.solve(self._matrix, self._factor.T @ alone)
 
     def of_motion(self, motion):
@@ -104,14 +130,17 @@ class FactoredSystem:
 
     def _of_motion(self, motion):
         """Return the residuals (3, k, .) that motions (3, k, .) make."""
-        nn, t11, t12, t21, t22 = self._slopes[:, :, None]
-        return np.stack((nn * motion[0], t11 * motion[1] + t12 * motion[2],
-                         t21 * motion[1] + t22 * motion[2]))
+        residual = self._own * motion
+        residual[1] += self._cross * motion[2]
+        residual[2] += self._cross * motion[1]
+        return residual
 
     def _without_response(self, residual):
         """Return the forces (3, k, .) that make residuals (3, k, .) if there is no response."""
-        normal = self._normal[:, None] * residual[0]
-        first = residual[1] - self._pull[0][:, None] * normal
-        second = residual[2] - self._pull[1][:, None] * normal
-        i11, i12, i21, i22 = self._tangential[:, :, None]
-        return np.stack((normal, i11 * first + i12 * second, i21 * first + i22 * second))
+        force = np.empty_like(residual)
+        np.multiply(self._normal, residual[0], out=force[0])
+        first, second = residual[1:] - self._pull * force[0]
+        i11, i12, i22 = self._tangential
+        force[1] = i11 * first + i12 * second
+        force[2] = i12 * first + i22 * second
+        return force

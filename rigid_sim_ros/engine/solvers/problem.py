@@ -92,3 +92,9 @@ class Solution:
 
     iterations: int
     """Linear systems solved, or sweeps done."""
+
+    start: np.ndarray
+    """
+    (3k,): a force to start from in a problem much like this one. It is the one before the
+    compliance is refined away (see `canonical`), which is what is searched first.
+    """

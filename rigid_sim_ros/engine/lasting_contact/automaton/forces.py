@@ -256,7 +256,9 @@ def general_forces(body, turn, arms, free, slips):
     count = len(arms)
     known = np.array([slip or (0.0, 0.0) for slip in slips]).T
     solution = solve(ContactProblem(responses_of(body, turn, arms), rows_of(free),
-                                    np.full(count, body.friction), np.zeros(count), known))
+                                    np.full(count, body.friction), np.zeros(count), known),
+                     body.last_forces.get(count))
+    body.last_forces[count] = solution.start
     return vectors_of(solution.force)
 
 

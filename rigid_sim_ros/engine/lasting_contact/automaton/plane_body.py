@@ -70,6 +70,8 @@ class PlaneBody:
         self.is_ball = not corners
         self.alike = inertia[0] == inertia[1] == inertia[2]
         self.points = range(len(corners) or 1)
+        self.last_forces = {}
+        """What the general solver starts from, (3k,), by the count of points."""
 
     def turn(self, state):
         """Return the rows of the rotation matrix, body to plane frame."""
