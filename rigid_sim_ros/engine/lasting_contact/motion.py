@@ -133,16 +133,17 @@ class FreeMotion:
         Return the attitudes (4, n) and rates (3, n) at the end of a step of `time` [s].
 
         The angular momentum is that of `start`, what contacts gave from `kicked` to `struck`, and
-        the torques'. On the way the bodies turn as if contacts had given what is in `passing`,
-        where that is not what is in `struck`.
+        the torques'. On the way the bodies turn at the mean rates of `passing`, if it is given and
+        `kicked` is after the whole of the step's forces, not half of them.
         """
-        passing = passing or struck
         if self._plain:
-            turn = rotation.from_rotation_vector(time * passing.angular)
+            turn = rotation.from_rotation_vector(time * (passing or struck).angular)
             return (rotation.normalize(rotation.multiply(turn, start.orientation)),
                     struck.angular)
         given = start.angular + struck.angular - kicked.angular
-        on_the_way = start.angular + passing.angular - kicked.angular
+        # less what the torques give on the way by themselves
+        on_the_way = given if passing is None else (
+            passing.angular - 0.5 * (kicked.angular - start.angular))
         orientation = turned(start.orientation, on_the_way, self._inertia, self._inverse_inertia,
                              self.torque, time)
         before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)

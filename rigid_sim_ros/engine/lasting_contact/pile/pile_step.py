@@ -265,7 +265,7 @@ class PileStep:
         struck = Motion(start.position, start.orientation, linear, angular)
         passing = Motion(start.position, start.orientation,
                          linear - left * (linear - start.linear),
-                         angular - left * (angular - kicked.angular))
+                         angular - left * (angular - start.angular))
         orientation, angular = self._free.turned(start, kicked, struck, duration, passing)
         position = start.position + duration * passing.linear
         self.end = Motion(position, orientation, linear, angular)
