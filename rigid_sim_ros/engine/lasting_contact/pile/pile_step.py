@@ -28,7 +28,7 @@ Of the solver in a step, at most, of many contacts and of few; what hardly moves
 tower of ten takes some hundreds when a force on it changes, and would totter if it got less.
 """
 
-WORK = 40_000
+WORK = 20_000
 """Iterations times contacts that take a few milliseconds."""
 
 FIRST_ITERATIONS = 300
