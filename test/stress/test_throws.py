@@ -71,20 +71,13 @@ def seeds(few, many):
 
 
 @pytest.mark.parametrize('shape', SHAPES)
-@pytest.mark.parametrize('seed', [*seeds(4, 227), *seeds(0, 350)[228:]])
+@pytest.mark.parametrize('seed', seeds(4, 350))
 def test_a_body_comes_to_rest_on_a_face(shape, seed):
     """With the energy falling all the way, and nothing in the ground."""
     watch = thrown(throw(seed, *material(seed), SHAPES[shape]))
     assert tilt(watch.simulation) < 1e-6
     assert watch.energy_rise < ENERGY
     assert watch.penetration < 1e-6
-
-
-@pytest.mark.stress
-@pytest.mark.xfail(reason='energy rises once by 4e-7 of its scale', strict=True)
-def test_a_box_that_gains_energy():
-    """One of 700 throws: the same as above."""
-    assert thrown(throw(227, *material(227), SHAPES['box'])).energy_rise < ENERGY
 
 
 @pytest.mark.parametrize('shape, restitution', [

@@ -25,6 +25,7 @@ from functools import partial
 
 from rigid_sim_ros.engine.lasting_contact.automaton import events
 from rigid_sim_ros.engine.lasting_contact.automaton.ball_attitude import turned_on
+from rigid_sim_ros.engine.lasting_contact.automaton.ball_resistance import stopped
 from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import ContactState
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized, ORIENTATION
@@ -190,8 +191,8 @@ class Automaton(ContactState):
     def settle(self):
         """Stop what slides or turns slowly: sliding or turning has ended."""
         if self.body.resists_spin:
-            self.hold_turning()
-        self.hold(self.closed, True)
+            self.state = stopped(self.state, self.body.radius, self._slip)
+        self.hold(self.closed)
 
 
 def _weighted(error, weight):

@@ -87,6 +87,18 @@ def resisted(body, slip, turning, linear, angular):
              r + mobility * tz))
 
 
+def stopped(state, radius, slow):
+    """Return the state with a ball's turning stopped where slow [m/s], and its rolling with it."""
+    vx, vy, vz, wx, wy, wz = state[7:]
+    if radius * hypot(wx, wy) <= slow:
+        wx = wy = 0.0
+        if hypot(vx, vy) <= slow:
+            vx = vy = 0.0
+    if radius * abs(wz) <= slow:
+        wz = 0.0
+    return [*state[:7], vx, vy, vz, wx, wy, wz]
+
+
 def _in_plane(body, normal, slip, rolling, linear, angular):
     """Return friction [N] and the torque against rolling [N m], (2,) each; see `resisted`."""
     mobility, inverse_mass, radius = body.inverse_inertia[0], body.inverse_mass, body.radius

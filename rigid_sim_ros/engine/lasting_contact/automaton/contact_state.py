@@ -42,6 +42,9 @@ SLIP = 3e-5
 RELEASE = 1e-7
 """Of the acceleration scale: what accelerates more without force lifts off."""
 
+STICKS = 1 - 1e-6
+"""Of the friction there may be: with less a point that is slow sticks."""
+
 DRIFT = 1e-12
 """Of length and speed: what is put back onto the plane."""
 
@@ -173,18 +176,32 @@ class ContactState:
                 if motion[2] > RELEASE * self.scales.acceleration]
 
     def drifting(self):
-        """Return whether closed points have left the plane, or move along its normal."""
+        """Return whether closed points have left the plane, or move where they cannot."""
         if not self.closed:
             return False
         gaps = self.body.gaps(self.state)
         arms = self.body.arms(self.body.turn(self.state), self.closed)
-        velocities = self.body.velocities(self.state, arms)
+        limit = DRIFT * self.scales.speed
         return (max(abs(gaps[point]) for point in self.closed) > DRIFT * self.scales.length
-                or max(abs(z) for _, _, z in velocities) > DRIFT * self.scales.speed)
+                or any(abs(z) > limit or sticks and max(abs(x), abs(y)) > limit
+                       for (x, y, z), sticks in zip(
+                           self.body.velocities(self.state, arms), self._sticking())))
+
+    def _sticking(self):
+        """
+        Return which closed points stick: slow, and held by less friction than there may be.
+
+        Whatever velocity such a point came with it would keep, and friction would do work on it.
+        """
+        _, _, slips, forces, *_ = self.solved
+        most = STICKS * self.body.friction
+        return [slip is None and hypot(x, y) < most * z
+                for slip, (x, y, z) in zip(slips, forces)]
 
     def _put_down(self):
-        """Put the closed points on the plane and stop them along its normal."""
+        """Put the closed points on the plane and stop them along its normal, or where they stick."""
         body = self.body
+        sticks = self._sticking()
         turn = body.turn(self.state)
         arms = body.arms(turn, self.closed)
         gaps = body.gaps(self.state)
@@ -192,7 +209,7 @@ class ContactState:
             moves = held(body, turn, arms, [(0.0, 0.0, gaps[point]) for point in self.closed],
                          [False] * len(arms))
             self.state = normalized(displaced(self.state, *moves))
-        self.hold(self.closed, False)
+        self.hold(self.closed, sticks)
 
     def rearm(self):
         """Arm the points that have risen high enough to touch again."""
@@ -201,31 +218,24 @@ class ContactState:
             self._unarmed = {point for point in self._unarmed
                              if gaps[point] < TOUCH * self.scales.length}
 
-    def hold(self, points, stick):
-        """Stop points along the normal, and if `stick` those too that slide slowly."""
+    def hold(self, points, sticks=None):
+        """
+        Stop points along the normal, and altogether those that stick, a list of bool.
+
+        If it is not given, those that slide slowly.
+        """
         body = self.body
         turn = body.turn(self.state)
         arms = body.arms(turn, points)
         velocities = body.velocities(self.state, arms)
-        sticks = [stick and slip is None for slip in self._slips_of(velocities)]
+        if sticks is None:
+            sticks = [slip is None for slip in self._slips_of(velocities)]
         change = held(body, turn, arms, velocities, sticks)
         if change is None:
             self.state = [*self.state[:7], *[0.0] * 6]
         else:
             self.state = [*self.state[:7], *(v + d for v, d in zip(
                 self.state[7:], (*change[0], *change[1])))]
-
-    def hold_turning(self):
-        """Stop a ball's turning where it is slow, and its rolling with it."""
-        vx, vy, vz, wx, wy, wz = self.state[7:]
-        radius = self.body.radius
-        if radius * hypot(wx, wy) <= self._slip:
-            wx = wy = 0.0
-            if hypot(vx, vy) <= self._slip:
-                vx = vy = 0.0
-        if radius * abs(wz) <= self._slip:
-            wz = 0.0
-        self.state = [*self.state[:7], vx, vy, vz, wx, wy, wz]
 
     # -- events --------------------------------------------------------------------------------
 
@@ -279,7 +289,7 @@ class ContactState:
         after = body.velocities(self.state, arms)
         closed = [point for point, (_, _, z) in zip(points, after) if z < self._stick]
         if closed:
-            self.hold(closed, True)
+            self.hold(closed)
         left = body.velocities(self.state, arms)
         done = not any(shares) or all(
             z >= 0.0 for point, (_, _, z) in zip(points, left) if point not in closed)
