@@ -257,7 +257,8 @@ class Recorder:
             chunks, is_due, is_last = self._next_chunks()
             for chunk in chunks:
                 if self._out_of_time():
-                    self._drop_waiting()
+                    with self._condition:
+                        self._dropped_count += self._packing.message_count
                     return
                 byte_count = self._bag.write(chunk)
                 with self._condition:
@@ -296,7 +297,3 @@ class Recorder:
                 self._dropped_count += self._packing.message_count
                 # whoever waits for room need not wait until the file is closed
                 self._condition.notify_all()
-
-    def _drop_waiting(self):
-        with self._condition:
-            self._dropped_count += self._packing.message_count
