@@ -199,7 +199,7 @@ class ContactState:
                 for slip, (x, y, z) in zip(slips, forces)]
 
     def _put_down(self):
-        """Put the closed points on the plane and stop them along its normal, or where they stick."""
+        """Put the closed points on the plane; stop them along its normal, or where they stick."""
         body = self.body
         sticks = self._sticking()
         turn = body.turn(self.state)
