@@ -20,6 +20,7 @@ itself, so that none pays for another. Fixed bodies, planes and sleeping bodies 
 may lie on.
 """
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -117,6 +118,10 @@ class Islands:
         for island in self._islands:
             island.disturb(np.union1d(indices, woken))
         return woken
+
+    def displace(self):
+        """Note that bodies have been put elsewhere: pairs are to be looked for again."""
+        self._spare = -inf
 
     def reached(self, start, end, state, deflected):
         """

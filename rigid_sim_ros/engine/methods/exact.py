@@ -176,6 +176,8 @@ class Exact:
         state = self.state
         for quantity, columns in values.items():
             state.change(quantity, indices, columns)
+        if 'position' in values or 'orientation' in values:
+            self._islands.displace()
         self._restart(indices)
 
     def set_wrench(self, indices, force, torque):

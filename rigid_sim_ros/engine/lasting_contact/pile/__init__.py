@@ -27,6 +27,8 @@ left are pushed out apart from that. Nothing of it adds energy, see `energy`. Re
 shared out as the solver comes upon them, which is not the canonical choice of small islands.
 """
 
+from math import inf
+
 import numpy as np
 
 from rigid_sim_ros.engine.events import IMPACT
@@ -99,6 +101,8 @@ class Pile:
         """(p,) [m]: how far points of each pair may have passed each other since then."""
         self._ahead = None
         """The `Motion` at the end of the last step and what was `Found` there, or None."""
+        self._end = None
+        """The `Motion` to which the contacts in use have been followed."""
 
     def advance(self, state, start, duration):
         """
@@ -111,6 +115,10 @@ class Pile:
         free = island.free_motion(state)
         scales = island.scales(free)
         motion = island.gather(state)
+        if self.contacts is not None and not same_poses(self._end, motion):
+            # somebody was put elsewhere: not where gaps were followed to, perhaps into others
+            motion = self._renew(motion, free, scales, duration, inf)
+            self._end = motion
         groups = np.full(island.member_count, -1)
         if self._rest_is_next():
             groups, contacts = resting_members(
@@ -238,6 +246,7 @@ class Pile:
         if (self._way > KEPT_WAY * scales.length).any() or (
                 self._rest_is_next() and (self.contacts.gap < -PUSHED * scales.length).any()):
             end = self._renew(end, free, scales, duration, step.lost)
+        self._end = end
         return end, closed
 
     def _late(self, step, scales, way, duration):
