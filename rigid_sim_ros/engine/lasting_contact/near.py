@@ -133,7 +133,8 @@ class Near:
                 break
             closing |= overlooked
             guess = start
-        self.island.impulses[half] = self.scene_pairs, self.rows.world(start.ravel())
+        self.island.impulses[half] = (self.scene_pairs, self.contacts.point,
+                                      self.rows.world(start.ravel()))
         struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
         return self._resisted(struck, impulse) if self.island.resists_spin else struck
 
@@ -145,19 +146,25 @@ class Near:
             ('linear', 'angular'), resistance.applied(motion.linear, motion.angular))))
 
     def _remembered(self, half):
-        """Return the last impulses of that name in contact axes, (3, k), or None."""
+        """
+        Return the last impulses of that name in contact axes, (3, k), or None.
+
+        Each is that of the nearest point of the same pair, if that has no nearer one now: which
+        points there are, and in what order, changes as bodies turn. It matters: where there is
+        more than one solution, as friction may have, the one nearby is that which goes on.
+        """
         last = self.island.impulses.get(half)
-        if last is None:
+        if last is None or not last[0]:
             return None
-        pairs, world = last
-        if pairs != self.scene_pairs:
-            places = {}
-            for place, pair in enumerate(pairs):
-                places.setdefault(pair, []).append(place)
-            missing = world.shape[1]
-            order = [places[pair].pop(0) if places.get(pair) else missing
-                     for pair in self.scene_pairs]
-            world = np.concatenate((world, np.zeros((3, 1))), axis=1).take(order, axis=1)
+        pairs, points, impulses = last
+        world = np.zeros((3, self.count))
+        away = self.contacts.point[:, :, None] - points[:, None, :]
+        square = (away * away).sum(axis=0)
+        mine, theirs = np.array(self.scene_pairs), np.array(pairs)
+        square[(mine[:, None] != theirs).any(axis=2)] = np.inf
+        nearest, rows = square.argmin(axis=1), np.arange(self.count)
+        known = (square.argmin(axis=0)[nearest] == rows) & (square[rows, nearest] < np.inf)
+        world[:, known] = impulses[:, nearest[known]]
         return self.rows.components(world).reshape(3, -1)
 
     def _solved(self, free, group, slip, guess):
@@ -205,10 +212,11 @@ def memory_of(islands, pairs_a, pairs_b):
     wanted = set(zip(pairs_a.tolist(), pairs_b.tolist()))
     together = {}
     for island in islands:
-        for half, (pairs, world) in island.impulses.items():
+        for half, (pairs, points, world) in island.impulses.items():
             kept = [place for place, (a, b) in enumerate(pairs)
                     if (a, b) in wanted or (b, a) in wanted]
-            before = together.get(half, ([], np.zeros((3, 0))))
+            before = together.get(half, ([], np.zeros((3, 0)), np.zeros((3, 0))))
             together[half] = (before[0] + [pairs[place] for place in kept],
-                              np.concatenate((before[1], world.take(kept, axis=1)), axis=1))
+                              np.concatenate((before[1], points.take(kept, axis=1)), axis=1),
+                              np.concatenate((before[2], world.take(kept, axis=1)), axis=1))
     return together
