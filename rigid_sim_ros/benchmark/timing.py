@@ -74,6 +74,7 @@ def timed(engine, task, limit=None):
     start = process_time()
     engine.build(scene, step, sleeping)
     built = process_time()
+    engine.expect(times)
     now = 0.0
     for time in times:
         engine.advance(time - now)

@@ -100,7 +100,7 @@ class Simulation:
 
     def expect_times(self, coming_times):
         """
-        Say at which times [s] states will be read: `coming_times(count)` gives the next `count`.
+        Say at which times [s] states will be read: `coming_times(count)` gives the next few.
 
         What is read is the same to the bit, but takes less time if the durations vary.
         """

@@ -41,7 +41,7 @@ class World:
     events: EventLog
     work: Work
     coming_times: Callable
-    """`coming_times(count)`: the next times [s] at which states are likely to be read."""
+    """`coming_times(count)`: up to so many times [s] at which states are likely to be read."""
 
     def acceleration(self, force):
         """Return gravity plus force over mass (3, n) [m/s^2], zero where a body is fixed."""

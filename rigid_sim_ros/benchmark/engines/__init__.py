@@ -42,6 +42,9 @@ class Engine:
         """
         raise NotImplementedError
 
+    def expect(self, times):
+        """Take the times [s] up to which it will be advanced and then read, if they help."""
+
     def advance(self, duration):
         """Advance by a duration [s], a whole number of steps."""
         raise NotImplementedError

@@ -14,6 +14,8 @@
 
 """The methods of this package."""
 
+from bisect import bisect_right
+
 from rigid_sim_ros.benchmark.engines import Engine
 from rigid_sim_ros.engine import Simulation
 
@@ -31,6 +33,14 @@ class Exact(Engine):
     def build(self, scene, step, sleeping):
         """Make the simulation."""
         self.simulation = Simulation(scene, method=self.method, max_step=step)
+
+    def expect(self, times):
+        """Let states be evaluated together."""
+        def coming(count):
+            place = bisect_right(times, self.simulation.time)
+            return times[place:place + count]
+
+        self.simulation.expect_times(coming)
 
     def advance(self, duration):
         """Advance."""

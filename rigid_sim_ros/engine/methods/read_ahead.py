@@ -39,28 +39,28 @@ class ReadAhead:
         self._most = max(1, min(MOST_TIMES, BLOCK // max(1, world.bodies.count)))
         self._changes = None
         self._times = ()
-        """Those evaluated, and the one after them."""
-        self._place = 0
-        """Of the time that is expected next."""
+        """Those evaluated, and the one after them if there is one."""
+        self._count = self._place = 0
+        """How many are evaluated, and which of all is expected next."""
 
     def poses(self, time):
         """Return positions (3, n) [m] and unit quaternions (4, n) at `time` [s], now."""
-        flights = self._flights
-        known = flights.changes == self._changes and time == self._times[self._place]
-        last = len(self._times) - 1
-        if not known or self._place == last:
-            self._evaluate(time, min(2 * last, self._most) if known else 1)
+        known = (self._flights.changes == self._changes and self._place < len(self._times)
+                 and time == self._times[self._place])
+        if not known or self._place == self._count:
+            self._evaluate(time, min(2 * self._count, self._most) if known else 1)
         place, self._place = self._place, self._place + 1
         return self._position[place], self._orientation[place]
 
     def _evaluate(self, time, count):
-        """Evaluate poses at `time` [s] and, with it, at `count` times in all."""
+        """Evaluate poses at `time` [s] and, with it, at `count` times in all, if there are."""
         flights = self._flights
         if not flights.axes_stay:
             count = 1
-        self._world.work.pose_evaluations += count
-        self._changes, self._place = flights.changes, 0
         self._times = [time, *self._world.coming_times(count)]
+        self._count = count = min(count, len(self._times))
+        self._changes, self._place = flights.changes, 0
+        self._world.work.pose_evaluations += count
         if count > 1:
             self._position, self._orientation = flights.poses_together(
                 np.array(self._times[:count]))
