@@ -115,8 +115,9 @@ class Islands:
             self.asleep[woken] = False
             self._mates[woken] = -1
             self.add(woken)
+        disturbed = np.concatenate((indices, woken))
         for island in self._islands:
-            island.disturb(np.union1d(indices, woken))
+            island.disturb(disturbed)
         return woken
 
     def displace(self):
