@@ -58,12 +58,23 @@ def contact_groups(bodies, contacts):
     a, b = contacts.body_a, contacts.body_b
     if bodies.inverse_mass[a[0]] > 0 and (a == a[0]).all():
         return [contacts]
-    moves = bodies.inverse_mass > 0
-    both = moves[a] & moves[b]
-    labels = component_labels(bodies.count, a[both], b[both])[np.where(moves[a], a, b)]
+    labels = _group_labels(bodies, a, b)
     if (labels == labels[0]).all():
         return [contacts]
     return [contacts.select(places) for _, places in alike(labels)]
+
+
+def group_numbers(bodies, contacts):
+    """Return the number (k,) of the group each of `Contacts` is in, as in `contact_groups`."""
+    return np.unique(_group_labels(bodies, contacts.body_a, contacts.body_b),
+                     return_inverse=True)[1]
+
+
+def _group_labels(bodies, a, b):
+    """Return the least index of the moving bodies that contacts of pairs (k,) hang together by."""
+    moves = bodies.inverse_mass > 0
+    both = moves[a] & moves[b]
+    return component_labels(bodies.count, a[both], b[both])[np.where(moves[a], a, b)]
 
 
 def lone_contacts(bodies, contacts):

@@ -14,19 +14,18 @@
 
 """Touches at the end of flights: which points meet, their impulses, and who goes on touching."""
 
-from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.events import IMPACT
-from rigid_sim_ros.engine.friction import mixed_restitution, restitution_of_one, surfaces_of
-from rigid_sim_ros.engine.graph import contact_groups, lone_contacts
+from rigid_sim_ros.engine.friction import surfaces_of
+from rigid_sim_ros.engine.graph import contact_groups, group_numbers, lone_contacts
 from rigid_sim_ros.engine.impacts import (
     one_contact, resolve_impact, resolve_one, separate_contacts)
 from rigid_sim_ros.engine.narrow_phase import find_contacts
-from rigid_sim_ros.engine.plain_vectors import dot, length
+from rigid_sim_ros.engine.stick_speed import stick_speed, stick_speeds
 
 FEW = 8
 """Up to so many bodies are placed one by one in plain floats, which is faster (measured)."""
@@ -34,22 +33,14 @@ FEW = 8
 FEW_ALONE = 3
 """The same of contacts that share no body."""
 
+MANY = 16
+"""More contacts than that are looked through for groups that only touch, all at once."""
+
 TOUCH_MARGIN = 1e-9
 """
 Points closer than this part of the smaller body meet at the same instant: a face that lands flat
 lands with all its corners. Instants are found some 1e-13 as well as that.
 """
-
-STICK_SPEED = 1e-3
-"""
-Points that part slower than this, times the root of acceleration times size, stay in contact. The
-error it makes in a motion is of its second order (the bounces left out take as long as it says).
-The acceleration is the largest of any point: a spinning body comes back to what it has hit without
-gravity too, and bounces as often as one that falls.
-"""
-
-ELASTIC_STICK_SPEED = 1e-5
-"""The same where nothing is lost in a rebound: bounces hardly get smaller, and energy is kept."""
 
 
 class Touch(NamedTuple):
@@ -69,34 +60,6 @@ class Touch(NamedTuple):
 
     stays: np.ndarray
     """(m,) bool: which go on touching something."""
-
-
-def stick_speed(bodies, acceleration, angular, body_a, body_b):
-    """Return the speed [m/s] below which contacts of these bodies, lists (k,), do not part."""
-    strongest = largest = 0.0
-    for index in {*body_a, *body_b}:
-        if index < bodies.moving_count:
-            radius = bodies.bounding_radius.item(index)
-            rate = angular[:, index].tolist()
-            strongest = max(strongest, length(acceleration[:, index].tolist())
-                            + dot(rate, rate) * radius)
-            largest = max(largest, radius)
-    elastic = all(restitution_of_one(surfaces_of(bodies, a, b), inf) >= 1
-                  for a, b in zip(body_a, body_b))
-    return (ELASTIC_STICK_SPEED if elastic else STICK_SPEED) * sqrt(strongest * largest)
-
-
-def stick_speeds(bodies, acceleration, angular, body_a, body_b):
-    """Return the `stick_speed` of each of contacts (k,) by itself, arrays (k,)."""
-    strongest, largest = [], []
-    for index in (body_a, body_b):
-        radius = np.where(index < bodies.moving_count, bodies.bounding_radius[index], 0.0)
-        pull, rate = acceleration[:, index], angular[:, index]
-        strongest.append(np.sqrt(rotation.dot(pull, pull)) + rotation.dot(rate, rate) * radius)
-        largest.append(radius)
-    stick = np.where(mixed_restitution(bodies, body_a, body_b) < 1, STICK_SPEED,
-                     ELASTIC_STICK_SPEED)
-    return stick * np.sqrt(np.maximum(*strongest) * np.maximum(*largest))
 
 
 class Touches:
@@ -161,9 +124,29 @@ class Touches:
         if lone.any():
             self._apply_alone(time, contacts.select(lone), stays)
             contacts = contacts.select(~lone)
+        if contacts.count > MANY:
+            contacts = self._approaching(contacts, stays)
         for group in contact_groups(bodies, contacts):
             self._apply(time, group, stays)
         return stays
+
+    def _approaching(self, contacts, stays):
+        """
+        Return the contacts of groups that have one that approaches.
+
+        Of the others mark the bodies that stay together, as `_apply` does for each group.
+        """
+        bodies = self._world.bodies
+        parting = self._parting_speed(contacts)
+        groups = group_numbers(bodies, contacts)
+        approach = np.zeros(len(groups), dtype=bool)
+        approach[groups[parting < 0.0]] = True
+        approach = approach[groups]
+        lasting = ~approach & (parting <= stick_speeds(
+            bodies, self._flights.acceleration, self._angular, contacts.body_a, contacts.body_b,
+            groups))
+        stays[contacts.body_a[lasting]] = stays[contacts.body_b[lasting]] = True
+        return contacts.select(approach)
 
     def _apply_alone(self, time, contacts, stays):
         """Apply the impulses of contacts that share no body, and mark those that stay together."""

@@ -17,6 +17,7 @@
 import numpy as np
 
 from rigid_sim_ros.engine.graph import alike, component_labels
+from rigid_sim_ros.engine.lasting_contact.pile.lone_members import lone_members, standing
 from rigid_sim_ros.engine.lasting_contact.rest import slow, stands
 from rigid_sim_ros.engine.lasting_contact.scales import REST
 
@@ -49,9 +50,12 @@ def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     of_contact = labels[np.where(a < count, a, b)]
     moved = np.zeros(count, dtype=bool)
     np.logical_or.at(moved, labels, ~calm)
+    for members, places in lone_members(labels, of_contact):
+        held = standing(island, free, scales, motion, contacts.select(places.ravel()), members)
+        resting[members[held & calm[members]]] = members[held & calm[members]]
     contacts_of = dict(alike(of_contact))
     for label, members in alike(labels):
-        if moved[label] or label not in contacts_of:
+        if resting[members[0]] >= 0 or moved[label] or label not in contacts_of:
             continue
         if quiet[members].all() or stands(
                 island, free, scales, motion, contacts.select(contacts_of[label]), members):

@@ -1,0 +1,52 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+"""Many bodies that touch at one instant: who approaches is struck, who parts flies."""
+
+import numpy as np
+
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
+from rigid_sim_ros.engine.shapes import Cube
+
+
+def standing(velocities, friction=0.5):
+    """Return a simulation of cubes that stand apart on level ground and move (n, 3) [m/s]."""
+    shape, material = Cube(0.2), Material(restitution=0.5, friction=friction)
+    bodies = tuple(Body(f'cube_{number}', shape, 1.0, shape.inertia(1.0),
+                        position=(1.0 * number, 0.0, 0.1), velocity=tuple(velocity),
+                        material=material) for number, velocity in enumerate(velocities))
+    plane = Plane('ground', (0.0, 0.0, 1.0), 0.0, material=material)
+    return Simulation(Scene(bodies=bodies, planes=(plane,)))
+
+
+def test_each_does_what_it_would_do_by_itself():
+    """Whatever the others do: at rest, sliding, driven into the ground, thrown up."""
+    kinds = np.array(((0, 0, 0), (1.0, 0.5, 0), (0, 0, -2.0), (0, 0, 1.5), (0.3, 0, -1e-9)))
+    velocities = np.tile(kinds, (12, 1)).astype(float)
+    simulation = standing(velocities)
+    simulation.advance(1 / 240)
+    struck = simulation.collisions[simulation.collisions['kind'] == IMPACT]
+    np.testing.assert_array_equal(np.unique(struck['body_a']),
+                                  np.flatnonzero(velocities[:, 2] < -0.1))
+    assert len(struck) == 4 * 12
+    np.testing.assert_allclose(struck['speed'], 2.0, rtol=1e-12)
+    np.testing.assert_array_equal(simulation.asleep, (velocities == 0).all(axis=1))
+    for number in range(len(kinds)):
+        alone = standing(velocities[number:number + 1])
+        alone.advance(1 / 240)
+        same = np.arange(number, len(velocities), len(kinds))
+        np.testing.assert_allclose(
+            simulation.position[same] - np.outer(same, (1, 0, 0)),
+            np.broadcast_to(alone.position, (len(same), 3)), rtol=0, atol=1e-9)
