@@ -42,8 +42,14 @@ BALANCE = 1e-12
 LONGEST = 0.05
 """Longest step [s], times the root of the length in metres: what happens within is looked for."""
 
+FLAT = 4.0
+"""So many times as long with a whole face in contact: nothing else can touch."""
+
 LANDED = 1e-12
 """Of the length scale: how near to the plane a point is that touches it."""
+
+FACE = 4
+"""Corners of one."""
 
 _CORRECTIONS = 5
 
@@ -67,6 +73,8 @@ class Automaton(ContactState):
         self.now = self.state
         """The state at the time that was last asked for."""
         self._longest = self._size = LONGEST * scales.length ** 0.5
+        self._taken = None
+        """The size [s] and the error of the last step, if it was one of the same motion."""
         rate = scales.speed / scales.length
         self._weights = [1 / (TOLERANCE * unit) for unit in (
             *[scales.length] * 3, *[1.0] * 4, *[scales.speed] * 3, *[rate] * 3)]
@@ -132,9 +140,9 @@ class Automaton(ContactState):
         self.rearm()
         if event is not None:
             event()
-            self._rates = self.begin()
+            self._rates, self._taken = self.begin(), None
         elif self.lifting() or self.drifting():
-            self._rates = self.begin()
+            self._rates, self._taken = self.begin(), None
 
     def _state_in(self, step, time):
         """Return the state at a time [s] since a step began."""
@@ -155,7 +163,7 @@ class Automaton(ContactState):
             if error > 1.0 and self.steps <= MOST_STEPS:
                 size *= max(0.2, 0.9 * error ** -0.2)
                 continue
-            following = min(size * (4.0 if error < 1e-4 else 0.9 * error ** -0.2), self._longest)
+            following = min(size * self._growth(size, error), self._most())
             time, event, point, too_long = events.first(self, started, step)
             if too_long and self.steps <= MOST_STEPS:
                 size *= 0.5
@@ -165,6 +173,28 @@ class Automaton(ContactState):
             if time < size:
                 step = self._step_to(rates, time, size, point, going)
             return step, event, following
+
+    def _most(self):
+        """Return how long the next step may be [s], whatever the error."""
+        return self._longest * (FLAT if len(self.closed) == FACE else 1.0)
+
+    def _growth(self, size, error):
+        """
+        Return how much longer the next step may be, after one of `size` [s] with an error.
+
+        If errors grow, as they do towards the end of sliding, steps get shorter at that rate
+        before one is too long (Gustafsson 1994, 'Control-theoretic techniques for stepsize
+        selection in implicit Runge-Kutta methods').
+        """
+        if error < 1e-4:
+            growth = 4.0
+        else:
+            growth = 0.9 * error ** -0.2
+            if self._taken is not None:
+                before, was = self._taken
+                growth = min(growth, growth * size / before * (was / error) ** 0.2)
+        self._taken = size, max(error, 1e-4)
+        return growth
 
     def _tried(self, rates, size, going):
         """Return a `Step` of `size` [s], in which a ball turns as it has been `going` to."""
