@@ -47,6 +47,9 @@ class Bodies:
     bounding_radius: np.ndarray
     """(n,) [m] about the centre of mass; infinite for planes."""
 
+    turning_radius: np.ndarray
+    """(n,) [m]: the same of points that turning brings elsewhere; zero for balls and planes."""
+
     plane_normal: np.ndarray
     """(3, n) unit vectors out of the solid, world axes; zero for bodies."""
 
@@ -108,6 +111,8 @@ def bodies_of(scene):
         half_extents=_columns([body.shape.half_extents for body in bodies] + plane_zeros),
         bounding_radius=np.array(
             [body.shape.bounding_radius for body in bodies] + [np.inf] * len(planes)),
+        turning_radius=np.array(
+            [body.shape.turning_radius for body in bodies] + [0.0] * len(planes)),
         plane_normal=_columns(body_zeros + [plane.normal for plane in planes]),
         plane_offset=np.array([0.0] * len(bodies) + [plane.offset for plane in planes]),
         inverse_mass=np.concatenate((1 / mass, np.zeros(fixed_count))),

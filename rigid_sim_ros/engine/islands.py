@@ -31,15 +31,10 @@ from rigid_sim_ros.engine.graph import component_labels
 from rigid_sim_ros.engine.lasting_contact import advance_island, Island
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
+from rigid_sim_ros.engine.reach import passed_on, Reach, REACH_FACTOR, within
 
 SPARE_STEPS = 4
 """Pairs are looked for that may meet in so many steps: till one does, islands stay as they are."""
-
-REACH_FACTOR = 2.0
-"""
-How much faster than now a body may be after an impact within a step: what could meet at this speed
-is looked at together.
-"""
 
 SKIN = 0.05
 """
@@ -92,6 +87,7 @@ class Islands:
         self._spare = 0.0
         """How far they may still come nearer to anything [m] before islands are made again."""
         self._pairs = LastingPairs(world)
+        self._reach = Reach(world.bodies, flights)
 
     def step_end(self, time, end):
         """Return how far to go at once [s], at most to `end`: steps are equal and short enough."""
@@ -136,13 +132,13 @@ class Islands:
         if self.touching.all():
             return nobody, nobody
         bodies = self._world.bodies
-        reach = self._reach(state, start, end)
+        reach = self._reach.until(state, start, end)
         reach[deflected] = REACH_FACTOR * reach.max()
         a, b = candidate_pairs(bodies, state.position, 2 * reach.max())
         both = b < bodies.moving_count
         a, b = a[both], b[both]
         mixed = self.touching[a] != self.touching[b]
-        a, b = _within(bodies, state.position, a[mixed], b[mixed], reach)
+        a, b = within(bodies, state.position, a[mixed], b[mixed], reach)
         if not a.size:
             return nobody, nobody
         gap = separations(bodies, a, b, state.position, state.orientation)
@@ -158,7 +154,9 @@ class Islands:
         `state` is that of all bodies at `start`; its columns of `members` are replaced.
         """
         parting, resting = [members[:0]], [members[:0]]
-        for island in self._current(members, start, end, state):
+        islands = self._current(members, start, end, state)
+        before = state.position[:, members], state.orientation[:, members]
+        for island in islands:
             outcome = advance_island(island, state, start, end - start)
             self._pairs.update(end, island, outcome.contacts)
             if outcome.resting.any():
@@ -167,6 +165,7 @@ class Islands:
                     _groups(island, outcome.contacts)[outcome.resting]]
             if not outcome.touching.all():
                 parting.append(_alone(island, outcome.touching | outcome.resting))
+        self._spare -= 2 * self._reach.way(members, *before, state)
         changes = Changes(np.concatenate(parting), np.concatenate(resting))
         if len(changes.parting) or len(changes.resting):
             self.touching[changes.parting] = self.touching[changes.resting] = False
@@ -176,13 +175,11 @@ class Islands:
 
     def _current(self, members, start, end, state):
         """Return the islands of these bodies (k,), made again if they may not be complete."""
-        reach = self._reach(state, start, end)
+        reach = self._reach.until(state, start, end)
         motion = 2 * reach[members].max()
-        self._spare -= motion
-        if self._spare < 0 or not np.array_equal(members, self._members):
+        if self._spare < motion or not np.array_equal(members, self._members):
             self._members = members
-            self._islands, spare = self._found(members, state, reach, motion)
-            self._spare = spare - motion
+            self._islands, self._spare = self._found(members, state, reach, motion)
         return self._islands
 
     def _found(self, members, state, reach, motion):
@@ -204,8 +201,8 @@ class Islands:
         a, b = candidate_pairs(bodies, state.position, 2 * reach.max() + margin)
         ours = (is_member[a] | is_member[b]) & solid[a] & solid[b]
         a, b = a[ours], b[ours]
-        reach = _passed_on(bodies, state.position, a, b, reach)
-        a, b = _within(bodies, state.position, a, b, reach + 0.5 * margin)
+        reach = passed_on(bodies, state.position, a, b, reach)
+        a, b = within(bodies, state.position, a, b, reach + 0.5 * margin)
         if crowd:
             return [self._island(members, a, b)], margin
         gap = separations(bodies, a, b, state.position, state.orientation) - reach[a] - reach[b]
@@ -226,37 +223,6 @@ class Islands:
                     and self.asleep[island.others(self._world.bodies.moving_count)].all()):
                 return island
         return Island(self._world, members, body_a, body_b, self._islands)
-
-    def _reach(self, state, start, end):
-        """Return how far points of bodies may come until `end`, (n,) [m]; zero if they rest."""
-        pull = self._flights.acceleration
-        reach = np.zeros(self._world.bodies.count)
-        moving = slice(0, self._world.bodies.moving_count)
-        linear, angular, pull = (
-            np.sqrt(rotation.dot(values, values))[moving]
-            for values in (state.linear_velocity, state.angular_velocity, pull))
-        speed = linear + angular * self._world.bodies.bounding_radius[moving]
-        reach[moving] = REACH_FACTOR * (end - start) * (speed + pull * (end - start))
-        return reach
-
-
-def _within(bodies, position, body_a, body_b, reach):
-    """Return those of pairs (p,) whose bounding spheres come together by the reach (n,) [m]."""
-    apart = position[:, body_b] - position[:, body_a]
-    reach = reach + np.where(np.isfinite(bodies.bounding_radius), bodies.bounding_radius, 0.0)
-    limit = reach[body_a] + reach[body_b]
-    near = (rotation.dot(apart, apart) <= limit * limit) | (body_b >= bodies.body_count)
-    return body_a[near], body_b[near]
-
-
-def _passed_on(bodies, position, body_a, body_b, reach):
-    """Return the reach (n,) [m] of bodies that those of pairs (p,) may hit, as they then have."""
-    a, b = _within(bodies, position, body_a, body_b, reach)
-    weak = bodies.inverse_mass
-    result = reach.copy()
-    for one, other in ((a, b), (b, a)):
-        np.maximum.at(result, one, reach[other] * weak[one] / (weak[one] + weak[other]))
-    return result
 
 
 def _with_the_many(labels, members):

@@ -41,6 +41,11 @@ class Shape:
         raise NotImplementedError
 
     @property
+    def turning_radius(self):
+        """Largest distance [m] from there of points that turning brings to another place."""
+        return self.bounding_radius
+
+    @property
     def volume(self):
         """Volume [m^3]."""
         raise NotImplementedError
@@ -116,6 +121,11 @@ class Sphere(Shape):
     def bounding_radius(self):
         """Return the radius [m]."""
         return self.radius
+
+    @property
+    def turning_radius(self):
+        """Return zero: where there was ball there is ball, however it turns."""
+        return 0.0
 
     @property
     def volume(self):

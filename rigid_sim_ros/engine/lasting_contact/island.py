@@ -30,10 +30,7 @@ from rigid_sim_ros.engine.lasting_contact.near import memory_of, Near, same_pose
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 from rigid_sim_ros.engine.narrow_phase import PairGroups
 from rigid_sim_ros.engine.spin_friction import resists_spin
-
-
-SLENDER = 3.0
-"""Ratio of extents above which it pays to tell the axes apart about which a body turns."""
+from rigid_sim_ros.engine.turning_bounds import TurningBounds
 
 
 class Island:
@@ -62,12 +59,7 @@ class Island:
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
-        radius, extents = self.bodies.bounding_radius, self.bodies.half_extents
-        self._radius = np.where(np.isfinite(radius), radius, 0.0)
-        self._arms = None
-        """(3, n) [m]: how far points are from each axis of a body, if that differs much."""
-        if (extents.max(axis=0) > SLENDER * extents.min(axis=0)).any():
-            self._arms = np.stack([np.hypot(extents[i - 1], extents[i - 2]) for i in range(3)])
+        self._turning = TurningBounds(self.bodies)
         self.resists_spin = resists_spin(self.bodies)
         """Whether there is friction against rolling or pivoting."""
         self.automata = {}
@@ -127,23 +119,16 @@ class Island:
 
     def reach(self, free, motion, duration):
         """Return how far [m] any point of the bodies (n,) comes in a time [s] without impacts."""
-        return duration * (_length(motion.linear) + self._turning(motion)
+        turning = self._turning.speeds(motion.orientation, motion.angular)
+        return duration * (_length(motion.linear) + turning
                            + duration * _length(free.acceleration))
 
     def closing(self, motion):
         """Return bounds (p,) of how fast [m/s] the points of pairs approach or pass each other."""
         a, b = self.pairs.pairs_a, self.pairs.pairs_b
-        turning, linear = self._turning(motion), motion.linear
+        turning = self._turning.speeds(motion.orientation, motion.angular)
+        linear = motion.linear
         return _length(linear[:, b] - linear[:, a]) + turning[a] + turning[b]
-
-    def _turning(self, motion):
-        """Return bounds (n,) of how fast [m/s] points move about the centre of their body."""
-        if self._arms is None:
-            return self._radius * _length(motion.angular)
-        # about each axis of the body, so that a rod may spin fast about its own
-        rates = rotation.transform_transposed(
-            rotation.matrix(motion.orientation), motion.angular)
-        return (np.abs(rates) * self._arms).sum(axis=0)
 
     def find_contacts(self, motion, margin):
         """Return the contacts (own columns) with gaps below a margin [m], (p,) or one."""
@@ -176,6 +161,7 @@ def _own_bodies(bodies, columns, member_count):
         moving_count=member_count, body_count=len(columns), kinds=kinds,
         half_extents=bodies.half_extents[:, columns],
         bounding_radius=bodies.bounding_radius[columns],
+        turning_radius=bodies.turning_radius[columns],
         plane_normal=bodies.plane_normal[:, columns], plane_offset=bodies.plane_offset[columns],
         inverse_mass=bodies.inverse_mass[columns] * mobile,
         inertia=np.where(mobile, bodies.inertia[:, columns], 1.0),
