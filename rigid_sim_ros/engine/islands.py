@@ -25,7 +25,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
 from rigid_sim_ros.engine.graph import component_labels
 from rigid_sim_ros.engine.lasting_contact import advance_island, Island

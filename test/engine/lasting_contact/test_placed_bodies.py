@@ -23,10 +23,10 @@ GRAVITY = 9.81
 EDGE = 0.2
 
 
-def cubes(places):
+def cubes(places, friction=0.5):
     """Return a scene of cubes of 1 kg on a plane, with their centres at places x [m]."""
     return load_scene({
-        'material': {'friction': 0.5, 'restitution': 0.0},
+        'material': {'friction': friction, 'restitution': 0.0},
         'planes': [{'name': 'ground', 'normal': [0, 0, 1], 'offset': 0.0}],
         'bodies': [{'name': f'cube_{index}', 'cube': {'edge': EDGE}, 'mass': 1.0,
                     'position': [place, 0, EDGE / 2]} for index, place in enumerate(places)]})
@@ -37,7 +37,8 @@ def cubes(places):
 @pytest.mark.parametrize('seconds', [0.02, 1.0])
 def test_a_body_lifted_out_of_a_row_falls_back(count, max_step, seconds):
     """Awake or asleep, one of cubes side by side: free fall, z = z0 - g t^2 / 2, then rest."""
-    simulation = Simulation(cubes(EDGE * np.arange(count)), max_step=max_step)
+    # with friction a turn by rounding jams what falls between others without any clearance
+    simulation = Simulation(cubes(EDGE * np.arange(count), friction=0.0), max_step=max_step)
     simulation.advance(seconds)
     index, lift = count // 2, 0.05
     simulation.set_pose(f'cube_{index}', position=(EDGE * index, 0, EDGE / 2 + lift))
