@@ -14,6 +14,7 @@
 
 """The executable rigid_sim_node."""
 
+import os
 import sys
 
 from rigid_sim_ros.nodes.signals import Interrupted, StopRequest
@@ -25,6 +26,9 @@ def main(arguments=None):
 
     0 after Ctrl-C or SIGTERM, 2 for what the user got wrong, with one line on stderr.
     """
+    # systems of equations are so small that a second thread takes time and gives none; results
+    # are the same
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     stop = StopRequest()
     stop.install()
     try:

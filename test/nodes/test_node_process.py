@@ -14,6 +14,7 @@
 
 """The node as a process: how it starts, what it says, how it ends."""
 
+import os
 import random
 import shlex
 import signal
@@ -59,6 +60,20 @@ def test_signal_breaks_off_what_takes_too_long(tmp_path):
         assert 'Traceback' not in process.error
     assert [message.time_ns for message in Bag(tmp_path / 'bag').messages()
             if message.topic.endswith('/poses')][0] == 0
+
+
+@pytest.mark.parametrize('given, used', [(None, '1'), ('3', '3')])
+def test_one_thread_computes_unless_told_otherwise(given, used):
+    """The others that OpenBLAS would start are for matrices a hundred times as large."""
+    script = ('import os, sys; from rigid_sim_ros.nodes import simulation_node; '
+              'assert "numpy" not in sys.modules; simulation_node.main(["node", "--help"]); '
+              'print(os.environ["OPENBLAS_NUM_THREADS"])')
+    environment = {key: value for key, value in os.environ.items()
+                   if key != 'OPENBLAS_NUM_THREADS'}
+    environment.update({} if given is None else {'OPENBLAS_NUM_THREADS': given})
+    shown = subprocess.run([sys.executable, '-c', script], env=environment, cwd=ROOT, timeout=60,
+                           check=True, capture_output=True, text=True)
+    assert shown.stdout.splitlines()[-1] == used
 
 
 def test_signal_while_it_starts(tmp_path):
