@@ -14,9 +14,24 @@
 
 """Which pairs are in lasting contact: the events of its beginning and its end."""
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 
 from rigid_sim_ros.engine.events import BEGIN, END
+
+
+class _Seen:
+    """The contacts of an island after its last step."""
+
+    def __init__(self, contacts):
+        self.contacts = contacts
+
+    def of_same_pairs(self, contacts):
+        """Return whether contacts, in columns of the same island, are of the same pairs."""
+        mine = self.contacts
+        return (np.array_equal(mine.body_a, contacts.body_a)
+                and np.array_equal(mine.body_b, contacts.body_b))
 
 
 class LastingPairs:
@@ -25,27 +40,34 @@ class LastingPairs:
     def __init__(self, world):
         self._world = world
         self._last_seen = {}
-        """By pair (a, b): a point and the normal, (3,) each, when it was last seen."""
+        """By pair (a, b): the `_Seen` it was last seen in, and which contact of that it is."""
+        self._by_island = WeakKeyDictionary()
 
     def update(self, time, island, contacts):
         """Note what began and what ended by `time` [s]; contacts are in columns of the island."""
+        seen = self._by_island.get(island)
+        if seen is not None and seen.of_same_pairs(contacts):
+            seen.contacts = contacts
+            return
+        self._by_island[island] = seen = _Seen(contacts)
         body_a, body_b = island.columns[contacts.body_a], island.columns[contacts.body_b]
-        seen = {pair: row for row, pair in enumerate(zip(body_a.tolist(), body_b.tolist()))}
+        rows = {pair: row for row, pair in enumerate(zip(body_a.tolist(), body_b.tolist()))}
         members = set(island.members.tolist())
         before = {pair for pair in self._last_seen if not members.isdisjoint(pair)}
-        for pair in sorted(seen.keys() - before):
-            row = seen[pair]
-            self._note(time, pair, BEGIN, contacts.point[:, row], contacts.normal[:, row])
-        for pair in sorted(before - seen.keys()):
+        for pair in sorted(rows.keys() - before):
+            self._note(time, pair, BEGIN, seen, rows[pair])
+        for pair in sorted(before - rows.keys()):
             self._note(time, pair, END, *self._last_seen.pop(pair))
-        for pair, row in seen.items():
-            self._last_seen[pair] = contacts.point[:, row], contacts.normal[:, row]
+        self._last_seen.update((pair, (seen, row)) for pair, row in rows.items())
 
     def forget(self, time, indices):
         """Take bodies (k,) out of contact, after a command say, at `time` [s]."""
         gone = set(np.asarray(indices).tolist())
+        self._by_island.clear()
         for pair in sorted(pair for pair in self._last_seen if not gone.isdisjoint(pair)):
             self._note(time, pair, END, *self._last_seen.pop(pair))
 
-    def _note(self, time, pair, kind, point, normal):
-        self._world.events.append(time, *pair, kind, point, normal)
+    def _note(self, time, pair, kind, seen, row):
+        contacts = seen.contacts
+        self._world.events.append(time, *pair, kind, contacts.point[:, row],
+                                  contacts.normal[:, row])

@@ -59,8 +59,8 @@ def advance_island(island, state, start, duration):
     touching, resting = found
     touched = np.zeros(island.bodies.count, dtype=bool)
     touched[touching.body_a] = touched[touching.body_b] = True
-    return Outcome(np.broadcast_to(resting, island.member_count),
-                   touched[:island.member_count], touching)
+    return Outcome(np.full(island.member_count, resting), touched[:island.member_count],
+                   touching)
 
 
 def _on_plane(island, state, start, duration):

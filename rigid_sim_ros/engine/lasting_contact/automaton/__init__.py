@@ -75,6 +75,8 @@ class OnPlane:
             x, y, z = bodies.half_extents[:, 0].tolist()
             self._corners = [(a * x, b * y, c * z) for a in (-1, 1) for b in (-1, 1)
                              for c in (-1, 1)]
+        self._constants = {}
+        """What does not change about contacts, by how many there are."""
         self._automaton = None
         self._began = 0.0
         """When it did [s]."""
@@ -186,21 +188,27 @@ class OnPlane:
     def _contacts(self, automaton):
         """Return the closed contacts, in columns of the island."""
         body, closed, numbers = automaton.body, automaton.closed, automaton.now
-        count = len(closed)
-        if not count:
+        if not closed:
             return Contacts.none()
         x, y, z = numbers[:3]
         points = [self._to_world((x + a, y + b, z + c + self._offset))
                   for a, b, c in body.arms(body.turn(numbers), closed)]
+        count = len(closed)
+        if count not in self._constants:
+            self._constants[count] = self._constants_of(count)
+        body_a, body_b, normal, feature, zeros = self._constants[count]
+        return Contacts(body_a, body_b, np.array(points).T, normal, zeros[0], feature, zeros,
+                        zeros)
+
+    def _constants_of(self, count):
+        """Return the bodies, normals and features of so many contacts, and their edges: none."""
         body_a, body_b = np.zeros(count, dtype=int), np.full(count, self._plane)
         normal = np.repeat(-self._island.bodies.plane_normal[:, self._plane, None], count, axis=1)
-        feature = np.full(count, ROUND if body.is_ball else FACE_B)
-        zeros = np.zeros((3, count))
+        feature = np.full(count, FACE_B if self._corners else ROUND)
         if self._swapped:
             body_a, body_b, normal = body_b, body_a, -normal
             feature[feature == FACE_B] = FACE_A
-        return Contacts(body_a, body_b, np.array(points).T, normal, zeros[0], feature, zeros,
-                        zeros)
+        return body_a, body_b, normal, feature, np.zeros((3, count))
 
 
 def plane_of(island, state, duration):
