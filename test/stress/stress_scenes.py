@@ -241,3 +241,20 @@ def two_thrown(seed, restitution, friction, edge=1.0, order=(0, 1), **values):
                    angular_velocity=vector(random, unit / edge))
               for name, side in (('a', -1.0), ('b', 1.0))]
     return scene([bodies[which] for which in order], restitution, friction, **values)
+
+
+def several_thrown(count, seed, restitution, friction, **values):
+    """Return three or more cubes on a ring above the ground, flung at its middle."""
+    random = np.random.default_rng((count, seed))
+    unit = GRAVITY ** 0.5
+    bodies = []
+    for number in range(count):
+        angle = 2 * np.pi * number / count
+        direction = np.array((np.cos(angle), np.sin(angle), 0.0))
+        bodies.append(body(
+            f'b{number}', Cube(1.0),
+            direction / np.sin(np.pi / count) + (0, 0, 2 + random.uniform(-0.3, 0.3)),
+            orientation=attitude(random),
+            velocity=tuple((-unit * random.uniform(0.3, 0.8) * direction).tolist()),
+            angular_velocity=vector(random, unit)))
+    return scene(bodies, restitution, friction, **values)

@@ -27,7 +27,8 @@ from rigid_sim_ros.engine.friction import mixed_restitution
 from rigid_sim_ros.engine.impacts import resolve_impact
 from rigid_sim_ros.engine.lasting_contact import scales as units
 from rigid_sim_ros.engine.lasting_contact.arrival import meeting_time
-from rigid_sim_ros.engine.lasting_contact.step import first_half, second_half
+from rigid_sim_ros.engine.lasting_contact.energy_balance import balanced, ending_of
+from rigid_sim_ros.engine.lasting_contact.step import first_half, Trial
 
 _MAX_ROUNDS = 50
 _ROUNDING = 1e-13
@@ -53,7 +54,7 @@ def arriving(motion, near, gap, speed):
 
 def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
     """
-    Return (time [s], motion, contacts near it) of the first impact in a step.
+    Return (the step so far, motion, contacts near it) at the first impact in a step.
 
     Parameters
     ----------
@@ -79,25 +80,25 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
         if time is None or not low < time < high:
             time = 0.5 * (low + high)
         if time <= shortest:
-            return 0.0, trial.start, near
+            return Trial.of_no_time(trial.free, trial.start, near), trial.start, near
         tried = first_half(trial.free, trial.start, near, time, limits)
         motion = tried.end()
         around = island.near(motion, margin)
         hits = arriving(motion, around, -overlap, speed)
         if hits.size:
             before, depth = depth, -float(around.contacts.separation[hits].min())
-            high, latest = time, (motion, around)
+            high, latest = time, (tried, motion, around)
             if depth > _GAIN * before or high - low <= _ROUNDING * trial.step:
                 break
             time = meeting_time(tried, around.contacts, hits.tolist())
         elif arriving(motion, around, overlap, speed).size:
-            return time, motion, around
+            return tried, motion, around
         else:
             low = time
             if latest is not None and high - low <= _ROUNDING * trial.step:
                 break
             time = _extrapolated(time, motion, around, speed)
-    return (high, *latest) if latest is not None else (time, motion, around)
+    return latest or (tried, motion, around)
 
 
 def _extrapolated(time, motion, near, speed):
@@ -109,18 +110,20 @@ def _extrapolated(time, motion, near, speed):
     return time + float((near.contacts.separation[fast] / approach[fast]).min())
 
 
-def resolve(motion, near, scales, limits, time, rebounds):
+def resolve(trial, motion, near, scales, limits, time, rebounds):
     """
     Return the motion after the impact of all contacts that are closed, and note its events.
 
     What was touching before is first given the forces it has missed since the last half step, so
-    that it does not yield before it is hit. Without `rebounds` all restitution is zero.
+    that it does not yield before it is hit; the step until then, a `Trial`, ends with that.
+    Without `rebounds` all restitution is zero.
     """
     closed = near.closed(units.IMPACT_GAP * scales.length)
     if not closed.size:
         return motion
     fast = near.approach(motion) > 0.5 * limits.impact_speed
-    motion = second_half(motion, near, closed[~fast[closed]])
+    held = closed[~fast[closed]]
+    motion, _ = balanced(ending_of(trial, motion, near, held), limits.slide_speed, carry=False)
     for group in near.groups(closed):
         if fast[group].any():
             motion = _struck(motion, near, group, scales, limits, time, rebounds)

@@ -151,6 +151,10 @@ class Island:
             last = self._near = margin, Near(self, motion, self.find_contacts(motion, margin))
         return last[1]
 
+    def remember(self, near, margin):
+        """Take these contacts `Near` a pose, known up to a margin [m], for what is found there."""
+        self._near = margin, near
+
 
 def _own_bodies(bodies, columns, member_count):
     """Return the `Bodies` of these columns, of which all but the first do not move."""

@@ -93,6 +93,9 @@ class FreeMotion:
     def __init__(self, bodies, acceleration, torque):
         self.acceleration = acceleration
         self.torque = torque
+        moves = bodies.inverse_mass > 0
+        self.mass = moves / np.where(moves, bodies.inverse_mass, 1.0)
+        """(n,) [kg], zero of what does not move."""
         self._inertia = bodies.inertia
         self._inverse_inertia = bodies.inverse_inertia
         moments = bodies.inertia[:, :bodies.moving_count]
@@ -107,6 +110,38 @@ class FreeMotion:
         torque = (rotation.transform_transposed(turn, self.torque)
                   - rotation.cross(rate, self._inertia * rate))
         return rotation.transform(turn, self._inverse_inertia * torque)
+
+    def kinetic_energy(self, motion):
+        """Return the kinetic energies (n,) [J], zero of what does not move."""
+        rate = motion.angular
+        if not self._plain:
+            rate = rotation.transform_transposed(rotation.matrix(motion.orientation), rate)
+        return 0.5 * (self.mass * rotation.dot(motion.linear, motion.linear)
+                      + rotation.dot(self._inertia * rate, rate))
+
+    def work(self, start, end, time):
+        """
+        Return what held forces and torques have done between two motions, (n,) [J].
+
+        That of torques is to second order in the time [s], exact if rates change evenly.
+        """
+        work = self.mass * rotation.dot(self.acceleration, end.position - start.position)
+        if self.torque.any():
+            work += 0.5 * time * rotation.dot(self.torque, start.angular + end.angular)
+        return work
+
+    def turned_by_torques(self, motion, time):
+        """Return what the held torques alone change rates (3, n) [rad/s] by in a time [s]."""
+        if not self.torque.any():
+            return np.zeros_like(motion.angular)
+        turn = rotation.matrix(motion.orientation)
+        return time * rotation.transform(turn, self._inverse_inertia * (
+            rotation.transform_transposed(turn, self.torque)))
+
+    def inertia_tensors(self, motion, which):
+        """Return the moments (3, 3, m) [kg m^2] of bodies (m,) about their centres, world axes."""
+        turn = rotation.matrix(motion.orientation[:, which])
+        return (turn[:, None] * turn * self._inertia[:, which]).sum(axis=2)
 
     def kicked(self, motion, time):
         """Return the motion after forces have acted for `time` [s] and nothing has moved."""

@@ -14,6 +14,7 @@
 
 """The contacts near the poses of one instant, and what is worked out of them when it is needed."""
 
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -107,11 +108,12 @@ class Near:
 
     def struck(self, motion, which, half, bias=None, slip=None):
         """
-        Return the motion after the impulses that keep contacts (m,) int from closing.
+        Return (the motion after the impulses that keep contacts (m,) int from closing, these).
 
         That is velocities across them, plus `bias` (3, k) in contact axes, of no approach, with
         friction; `slip` (2, k) are directions known, see `ContactProblem`. `half` names what they
-        are for: the last impulses of the same name are what the solver starts from.
+        are for: the last impulses of the same name are what the solver starts from. The impulses
+        (3, k) are in contact axes.
         """
         count = self.count
         free = self.rows.components(self.across(motion)).reshape(3, count)
@@ -136,7 +138,23 @@ class Near:
         self.island.impulses[half] = (self.scene_pairs, self.contacts.point,
                                       self.rows.world(start.ravel()))
         struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
-        return self._resisted(struck, impulse) if self.island.resists_spin else struck
+        if self.island.resists_spin:
+            struck = self._resisted(struck, impulse)
+        return struck, impulse
+
+    def shifted(self, motion, linear, angular):
+        """
+        Return the contacts near a `Motion` that is hardly anywhere else, gaps to first order.
+
+        Away are its bodies (n,) by (3, n) [m] and turned by (3, n) [rad], so little that their
+        Jacobian can stay.
+        """
+        # with all that has been worked out
+        near = copy(self)
+        near.position, near.orientation = motion.position, motion.orientation
+        near.contacts = replace(self.contacts, separation=self.contacts.separation + rotation.dot(
+            self.contacts.normal, self.rows.across(linear, angular)))
+        return near
 
     def _resisted(self, motion, impulse):
         """Return the motion after friction against rolling and pivoting under impulses (3, k)."""

@@ -33,6 +33,7 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact.motion import FreeMotion, Motion
+from rigid_sim_ros.engine.lasting_contact.near import Near
 from rigid_sim_ros.engine.narrow_phase import gap_acceleration_bias
 from rigid_sim_ros.engine.solvers import ContactProblem, solve
 
@@ -83,16 +84,30 @@ class Trial(NamedTuple):
     step: float
     """[s]"""
 
+    near: Near
+    """The contacts at its start."""
+
+    impulse: np.ndarray = None
+    """(3, k) [N s], contact axes: those of the first half; None if there are none."""
+
+    across: np.ndarray = None
+    """(3, k) [m/s], world axes: the velocities across its contacts at the start; likewise."""
+
     def end(self):
         """Return the motion at the end but for the impulses of the second half."""
         return self.free.drifted(self.start, self.kicked, self.struck, self.step)
+
+    @classmethod
+    def of_no_time(cls, free, motion, near):
+        """Return the trial of a step in which nothing happens."""
+        return cls(free, motion, motion, motion, 0.0, near)
 
 
 def first_half(free, start, near, step, limits):
     """Return the `Trial` of a step [s] from a `Motion` with the contacts `Near` it."""
     kicked = free.kicked(start, 0.5 * step)
     if not near.count:
-        return Trial(free, start, kicked, kicked, step)
+        return Trial(free, start, kicked, kicked, step, near)
     contacts = near.contacts
     across = near.across(start)
     speed = rotation.dot(across, contacts.normal)
@@ -100,16 +115,21 @@ def first_half(free, start, near, step, limits):
     soon = closed | (contacts.separation + step * speed < limits.arrival_gap)
     which = np.flatnonzero(soon & (speed > -limits.impact_speed))
     if not which.size:
-        return Trial(free, start, kicked, kicked, step)
+        return Trial(free, start, kicked, kicked, step, near)
     bias = _turning(near, start, step)
     bias[0] += np.maximum(contacts.separation, 0.0) / step
     slip = _slip(near.rows.components(across).reshape(3, -1), closed, limits.slide_speed)
-    return Trial(free, start, kicked, near.struck(kicked, which, FIRST, bias, slip), step)
+    struck, impulse = near.struck(kicked, which, FIRST, bias, slip)
+    return Trial(free, start, kicked, struck, step, near, impulse, across)
 
 
 def second_half(motion, near, which, half=SECOND):
-    """Return the motion with the impulses that end a step on its touching contacts (m,) int."""
-    return near.struck(motion, which, half) if len(which) else motion
+    """
+    Return (motion, impulses) at the end of a step, after those on its touching contacts (m,) int.
+
+    The impulses are (3, k) [N s] in contact axes, or None.
+    """
+    return near.struck(motion, which, half) if len(which) else (motion, None)
 
 
 def push_out(motion, near):

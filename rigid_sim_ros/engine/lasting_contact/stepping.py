@@ -18,8 +18,10 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.lasting_contact import cut, scales as units
+from rigid_sim_ros.engine.lasting_contact.energy_balance import balanced, ending_of
 from rigid_sim_ros.engine.lasting_contact.rest import at_rest
-from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits, push_out, second_half
+from rigid_sim_ros.engine.lasting_contact.step import (
+    first_half, Limits, push_out, Trial)
 
 _MOST_PARTS = 1000
 
@@ -53,30 +55,34 @@ def _advance(island, free, scales, limits, motion, near, time, step):
     overlap = units.OVERLAP * scales.length
     margin = limits.margin(step)
     if cut.arriving(motion, near, overlap, limits.impact_speed).size:
-        motion = cut.resolve(motion, near, scales, limits, time, rebounds=True)
+        motion = cut.resolve(Trial.of_no_time(free, motion, near), motion, near, scales, limits,
+                             time, rebounds=True)
     left = step
-    for number in range(2 * units.MAX_CUTS):
+    for number in range(2 * units.MAX_CUTS + 1):
         trial = first_half(free, motion, near, left, limits)
         end = trial.end()
         end_near = island.near(end, margin)
         hits = cut.arriving(end, end_near, -units.IMPACT_GAP * scales.length,
                             0.5 * limits.impact_speed)
-        if not hits.size:
+        if not hits.size or number == 2 * units.MAX_CUTS:
             break
-        part, motion, near = cut.first_impact(island, limits, overlap, margin, trial, near,
-                                              end_near, hits)
-        left -= part
-        motion = cut.resolve(motion, near, scales, limits, time + step - left,
+        trial, motion, near = cut.first_impact(island, limits, overlap, margin, trial, near,
+                                               end_near, hits)
+        left -= trial.step
+        motion = cut.resolve(trial, motion, near, scales, limits, time + step - left,
                              rebounds=number < units.MAX_CUTS)
         if left <= cut.SHORTEST * step:
-            end, end_near = motion, near
+            trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
     end, end_near = _separated(island, end, end_near, overlap, margin)
     closed = end_near.closed(limits.touch_gap)
     if closed.size:
         # what arrives fast just now is an impact, the first thing in the next step
         closed = closed[end_near.approach(end)[closed] <= limits.impact_speed]
-    return second_half(end, end_near, closed), end_near
+    ending = ending_of(trial, end, end_near, closed)
+    motion, near = balanced(ending, limits.slide_speed)
+    island.remember(near, margin)
+    return motion, near
 
 
 def _separated(island, motion, near, overlap, margin):

@@ -59,17 +59,19 @@ def plank_on_cube(step):
 
 
 def test_plank_tips_off_a_cube_to_second_order():
-    """The angle after 0.9 s against the pendulum's: 2e-7 rad at 1/240 s, a quarter at half."""
+    """The angle after 0.9 s against the pendulum's: 1e-7 rad at 1/240 s, and no energy lost."""
     errors = []
     for step in (1 / 60, 1 / 120, 1 / 240):
         run = plank_on_cube(step)
+        energy = run.energy()
         run.run(0.9)
+        assert run.energy() == pytest.approx(energy, rel=1e-13)
         _, y, _, w = run.state.orientation[:, 1]
         errors.append(2 * np.arctan2(y, w) - tipping_angle(0.9))
         np.testing.assert_allclose(run.state.position[:, 0], (0, 0, 0.5), atol=1e-14)
-    assert abs(errors[2]) < 2e-7
-    assert errors[0] / errors[1] == pytest.approx(4, rel=0.1)
-    assert errors[1] / errors[2] == pytest.approx(4, rel=0.1)
+    assert abs(errors[2]) < 1e-7
+    assert errors[0] / errors[1] > 4
+    assert errors[1] / errors[2] > 4
 
 
 def test_cube_slides_on_a_free_plate():
