@@ -29,6 +29,8 @@ ENCAPSULATION = b'\x00\x01\x00\x00'
 
 NANOSECONDS = 1_000_000_000
 
+_TIME = struct.Struct('<iI')
+
 _TRAILING = 3
 """Bytes that a sender may leave after the last field: the payload is padded to four."""
 
@@ -127,34 +129,38 @@ class Template:
     """
     A message of fixed layout that is filled in place again and again.
 
-    The payload starts four bytes into the buffer, after room for the header, and the buffer
-    another four before that: doubles aligned in the message are then aligned in memory too.
+    Cut off the front of a bytearray, bytes are not moved, so the message begins four bytes after
+    a multiple of eight: doubles aligned in it are then aligned in memory too, which is faster.
     """
 
     def __init__(self, writer):
-        self._buffer = bytearray(4) + writer.message()
-        self._message = memoryview(self._buffer)[4:]
+        self._message = bytearray(4) + writer.message()
+        del self._message[:4]
 
     def doubles(self, offset, count, width):
         """Return a (count, width) view of the doubles at an offset of the payload."""
-        values = np.frombuffer(self._buffer, np.float64, count * width, 8 + offset)
+        values = np.frombuffer(self._message, np.float64, count * width, 4 + offset)
         return values.reshape(count, width)
 
     def set_time(self, time_ns, offset=0):
         """Write a builtin_interfaces/Time at an offset of the payload."""
-        struct.pack_into('<iI', self._buffer, 8 + offset, *seconds_and_nanoseconds(time_ns))
+        _TIME.pack_into(self._message, 4 + offset, *divmod(time_ns, NANOSECONDS))
 
     def continued(self):
         """Return a `Writer` that goes on after a copy of the message as it is filled in now."""
-        return Writer(self._message[4:])
+        return Writer(memoryview(self._message)[4:])
 
     def message(self):
         """Return the message as it is filled in now."""
         return bytes(self._message)
 
     def view(self):
-        """Return the message without copying it: it changes as the template is filled in anew."""
-        return self._message.toreadonly()
+        """
+        Return the message itself, to be read only: it changes as the template is filled in anew.
+
+        A bytearray, which rclpy takes as it is; of a memoryview it would need a copy.
+        """
+        return self._message
 
 
 class Reader:

@@ -43,6 +43,8 @@ class Publication:
         self._publisher = node.create_publisher(
             interface(row.type_name), row.name, quality_of_service(row.quality, reliability),
             qos_overriding_options=QoSOverridingOptions.with_default_policies())
+        # `publish` itself takes bytes only, so the messages would have to be copied once more
+        self._publish = self._publisher.handle.publish_raw
         # what is latched goes to subscribers yet to come
         self._latched = row.quality.durability == 'transient_local'
         self._subscribers_before = 0
@@ -66,14 +68,14 @@ class Publication:
         data = self._encode(time)
         self.encoded += 1
         if heard:
-            self._publisher.publish(bytes(data))
+            self._publish(data)
         if recorded:
             self._recording.write(self.row.name, time, data)
 
     def send_bytes(self, data):
         """Publish a message made elsewhere, to subscribers only."""
         if self.heard:
-            self._publisher.publish(data)
+            self._publish(data)
 
     def forget_bodies(self):
         """Make the encoder anew for the next message: the source has other bodies now."""
