@@ -70,4 +70,7 @@ class Display:
             publication.send_bytes(encode_delete_all(time, self._source.frame_id))
 
     def _watched(self):
-        return any(publication.heard for publication in self._publications.of(FOR_DISPLAY))
+        for publication in self._publications.of(FOR_DISPLAY):
+            if publication.heard:
+                return True
+        return False

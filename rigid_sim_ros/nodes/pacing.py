@@ -43,8 +43,7 @@ class Pacer:
 
     def __init__(self, real_time_factor, period):
         """Begin with a factor and the simulated time between two states [s]; see `anchor`."""
-        self._factor = real_time_factor
-        self._period = period
+        self._set_pace(real_time_factor, period)
         self._anchor_time = 0
         self._anchor_wall = 0.0
         self._earliest = float('-inf')
@@ -63,33 +62,35 @@ class Pacer:
 
     def change(self, real_time_factor, period, time, now):
         """Go on from simulated time `time` [ns] with another factor or period [s]."""
-        self._factor = real_time_factor
-        self._period = period
+        self._set_pace(real_time_factor, period)
         self.anchor(time, now)
 
     def due(self, time):
         """Return the wall time [s] at which simulated time `time` [ns] is to be published."""
         if self._factor == 0:
             return float('-inf')
-        return max(self._scheduled(time), self._earliest)
+        scheduled = self._anchor_wall + (time - self._anchor_time) / self._speed
+        return scheduled if scheduled > self._earliest else self._earliest
 
     def published(self, time, now):
         """Note that the state of simulated time `time` [ns] was published at `now` [s]."""
         if self._factor == 0:
             return
-        wall_period = self._period / self._factor
-        lateness = now - self._scheduled(time)
-        self._earliest = now + wall_period / CATCH_UP_SPEED
+        lateness = now - self._anchor_wall - (time - self._anchor_time) / self._speed
+        self._earliest = now + self._wall_period / CATCH_UP_SPEED
         if lateness > self.worst_lateness:
             self.worst_lateness = lateness
-        if lateness > wall_period:
+        if lateness > self._wall_period:
             self.missed_deadlines += 1
         if lateness > MOST_LATENESS:
             self.time_given_up += lateness
             self._anchor_wall += lateness
 
-    def _scheduled(self, time):
-        return self._anchor_wall + (time - self._anchor_time) / (NANOSECONDS * self._factor)
+    def _set_pace(self, real_time_factor, period):
+        self._factor = real_time_factor
+        # simulated nanoseconds a second of wall time, and seconds of wall time a state
+        self._speed = NANOSECONDS * real_time_factor
+        self._wall_period = period / real_time_factor if real_time_factor else 0.0
 
 
 class PublishGrid:

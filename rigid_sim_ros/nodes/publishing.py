@@ -190,7 +190,7 @@ class Publications:
         if self._now() >= self._look_due:
             self.look()
         recording = self._recording if to_recording and self._recording.active else None
-        for publication in self.of(when):
+        for publication in self._occasions.get(when, ()):
             heard = to_subscribers and publication.heard
             recorded = recording is not None and recording.wants(publication.row)
             if heard or recorded:

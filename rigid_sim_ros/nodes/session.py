@@ -96,7 +96,7 @@ class Session:
 
         If `pause_on_collision`, only to the first collision on the way, and pause there.
         """
-        self.advance_to(self.next_time, self.pause_on_collision)
+        self.advance_to(self._grid.after(self._time), self.pause_on_collision)
 
     def step(self, duration, stop=lambda: False):
         """

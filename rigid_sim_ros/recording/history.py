@@ -98,7 +98,12 @@ class History:
     def add_state(self, time_ns):
         """Note that the simulation was advanced to a time [ns]; nothing if it is there already."""
         if time_ns != self._last_ns:
-            self._add(time_ns, _STATE.pack(0, time_ns - self._last_ns))
+            record = _STATE.pack(0, time_ns - self._last_ns)
+            self._last_ns = time_ns
+            if self.complete:
+                self._records += record
+                if len(self._records) >= _BLOCK_BYTES:
+                    self._close_block()
 
     def add_message(self, name, time_ns, data):
         """Note a message of a topic that took effect at a time [ns]."""
