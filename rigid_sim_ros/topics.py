@@ -69,6 +69,9 @@ class Source:
     statuses: tuple = ()
     """`messages.DiagnosticStatus` of the node, the engine and the recorder."""
 
+    shared: Optional[dict] = None
+    """What the messages of one state share while they are made together; None at other times."""
+
 
 @dataclass(frozen=True)
 class Published:
@@ -112,15 +115,36 @@ class Service:
 def _poses(source):
     simulation = source.simulation
     encoder = messages.PoseArrayEncoder(source.frame_id, len(simulation.names))
-    return lambda time_ns: encoder.view(time_ns, simulation.position, simulation.orientation)
+
+    def encode(time_ns):
+        message = encoder.view(time_ns, simulation.position, simulation.orientation)
+        if source.shared is not None:
+            source.shared['poses'] = encoder.poses
+        return message
+
+    return encode
 
 
 def _states(source):
     simulation = source.simulation
     encoder = messages.MultiDOFJointStateEncoder(source.frame_id, simulation.names)
-    return lambda time_ns: encoder.view(
-        time_ns, simulation.position, simulation.orientation, simulation.linear_velocity,
-        simulation.angular_velocity, simulation.force, simulation.torque)
+    held = None, None
+
+    def encode(time_ns):
+        nonlocal held
+        if source.shared:
+            encoder.copy_poses(source.shared['poses'])
+        else:
+            encoder.write_poses(simulation.position, simulation.orientation)
+        encoder.write_twists(simulation.linear_velocity, simulation.angular_velocity)
+        force, torque = simulation.force, simulation.torque
+        # the engine never writes into an array of its state: if it is the same, so are the values
+        if force.base is not held[0] or torque.base is not held[1]:
+            encoder.write_wrenches(force, torque)
+            held = force.base, torque.base
+        return encoder.view(time_ns)
+
+    return encode
 
 
 def _collisions(source):
@@ -156,7 +180,6 @@ _CONTACT_ARROW_LENGTH = 0.1
 
 _LARGEST_ARROW_COUNT = 100
 """More contacts than that are not drawn; the events topic has them all."""
-
 
 _PLANE_SIZE = (20.0, 20.0, 0.01)
 """Sides [m] of the slab that stands for a plane."""

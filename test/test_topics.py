@@ -96,6 +96,34 @@ def test_poses_follow_the_simulation(source):
     assert poses.position[0, 0] == 1 + 4 * 0.5 + 7 * 0.5 ** 2 / 2
 
 
+@pytest.mark.parametrize('method', ('exact', 'stepped'))
+def test_states_made_beside_poses_again_and_again_are_those_made_alone(method):
+    simulation = Simulation(load_scene(SCENE), method)
+    alone, beside = topics.Source(simulation), topics.Source(simulation)
+    poses, states = (row.encoder(beside) for row in topics.PUBLISHED[:2])
+
+    def changes():
+        yield lambda: simulation.advance(0.01)
+        yield lambda: simulation.apply_wrench('cube', (1, 0, 0), (0, 2, 0))
+        yield lambda: simulation.advance(0.01)
+        yield lambda: simulation.apply_wrench('ball', (0, 0, 3))
+        yield lambda: simulation.apply_wrenches(np.ones((2, 3)), np.zeros((2, 3)))
+        yield lambda: simulation.set_pose('ball', (-1, -2, -2))
+        yield lambda: simulation.reset()
+        yield lambda: simulation.advance(0.5)
+
+    seen = {encode(alone, '~/states')}
+    for change in changes():
+        change()
+        beside.shared = {}
+        poses(TIME_NS)
+        data = bytes(states(TIME_NS))
+        beside.shared = None
+        assert data == encode(alone, '~/states') == bytes(states(TIME_NS))
+        seen.add(data)
+    assert len(seen) == 9 - 1  # after the reset it is as at the start
+
+
 def test_collisions_and_their_text_tell_the_same(source):
     events = messages.decode_collisions(encode(source, '~/collisions'))
     assert events['time'].tolist() == [1.25, 1.5]

@@ -15,11 +15,15 @@
 """Small messages: std_msgs/String, rosgraph_msgs/Clock and diagnostic_msgs/DiagnosticArray."""
 
 from dataclasses import dataclass, field
+import struct
 
-from rigid_sim_ros.messages.cdr import Reader, Writer
+from rigid_sim_ros.messages.cdr import (
+    ENCAPSULATION, Reader, seconds_and_nanoseconds, Writer)
 
 OK, WARN, ERROR, STALE = range(4)
 """Levels of a diagnostic status."""
+
+_CLOCK = struct.Struct('<4siI')
 
 
 @dataclass(frozen=True)
@@ -50,9 +54,7 @@ def decode_string(data):
 
 def encode_clock(time_ns):
     """Return a rosgraph_msgs/Clock of a time [ns]."""
-    writer = Writer()
-    writer.time(time_ns)
-    return writer.message()
+    return _CLOCK.pack(ENCAPSULATION, *seconds_and_nanoseconds(time_ns))
 
 
 def decode_clock(data):

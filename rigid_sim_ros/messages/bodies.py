@@ -34,7 +34,9 @@ class PoseArrayEncoder:
         writer.header(0, frame_id)
         offset = writer.array(body_count, 7)
         self._template = Template(writer)
-        self._poses = self._template.doubles(offset, body_count, 7)
+        self.poses = self._template.doubles(offset, body_count, 7)
+        """What is in the message, a row a body: x, y, z and the quaternion x, y, z, w."""
+        self._position, self._orientation = self.poses[:, :3], self.poses[:, 3:]
 
     def encode(self, time_ns, position, orientation):
         """Return the message with a stamp [ns], positions (n, 3) and orientations (n, 4)."""
@@ -43,8 +45,8 @@ class PoseArrayEncoder:
     def view(self, time_ns, position, orientation):
         """Return what `encode` does as a view, which holds until the next message is made."""
         self._template.set_time(time_ns)
-        self._poses[:, :3] = position
-        self._poses[:, 3:] = orientation
+        self._position[...] = position
+        self._orientation[...] = orientation
         return self._template.view()
 
 
@@ -58,26 +60,43 @@ class MultiDOFJointStateEncoder:
         writer.strings(names)
         offsets = [writer.array(body_count, width) for width in (7, 6, 6)]
         self._template = Template(writer)
-        self._transforms, self._twists, self._wrenches = (
+        self._poses, twists, wrenches = (
             self._template.doubles(offset, body_count, width)
             for offset, width in zip(offsets, (7, 6, 6)))
+        self._position, self._orientation = self._poses[:, :3], self._poses[:, 3:]
+        self._linear_velocity, self._angular_velocity = twists[:, :3], twists[:, 3:]
+        self._force, self._torque = wrenches[:, :3], wrenches[:, 3:]
 
     def encode(self, time_ns, position, orientation, linear_velocity, angular_velocity,
                force, torque):
         """Return the message with a stamp [ns] and the bodies' poses, twists and wrenches."""
-        return bytes(self.view(time_ns, position, orientation, linear_velocity, angular_velocity,
-                               force, torque))
+        self.write_poses(position, orientation)
+        self.write_twists(linear_velocity, angular_velocity)
+        self.write_wrenches(force, torque)
+        return bytes(self.view(time_ns))
 
-    def view(self, time_ns, position, orientation, linear_velocity, angular_velocity,
-             force, torque):
-        """Return what `encode` does as a view, which holds until the next message is made."""
+    def write_poses(self, position, orientation):
+        """Let the message have positions (n, 3) and orientations (n, 4) from now on."""
+        self._position[...] = position
+        self._orientation[...] = orientation
+
+    def copy_poses(self, poses):
+        """Let it have those that are rows (n, 7) of another message."""
+        self._poses[...] = poses
+
+    def write_twists(self, linear_velocity, angular_velocity):
+        """Let it have velocities (n, 3) and (n, 3) from now on."""
+        self._linear_velocity[...] = linear_velocity
+        self._angular_velocity[...] = angular_velocity
+
+    def write_wrenches(self, force, torque):
+        """Let it have wrenches (n, 3) and (n, 3) from now on."""
+        self._force[...] = force
+        self._torque[...] = torque
+
+    def view(self, time_ns):
+        """Return the message with a stamp [ns], to be read until anything is written to it."""
         self._template.set_time(time_ns)
-        self._transforms[:, :3] = position
-        self._transforms[:, 3:] = orientation
-        self._twists[:, :3] = linear_velocity
-        self._twists[:, 3:] = angular_velocity
-        self._wrenches[:, :3] = force
-        self._wrenches[:, 3:] = torque
         return self._template.view()
 
 

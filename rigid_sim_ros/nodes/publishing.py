@@ -190,11 +190,13 @@ class Publications:
         if self._now() >= self._look_due:
             self.look()
         recording = self._recording if to_recording and self._recording.active else None
+        self._source.shared = {}
         for publication in self._occasions.get(when, ()):
             heard = to_subscribers and publication.heard
             recorded = recording is not None and recording.wants(publication.row)
             if heard or recorded:
                 publication.send(time, heard, recorded)
+        self._source.shared = None
 
     def of(self, when):
         """Return the publications sent at one of the occasions in `topics`, as a list."""
