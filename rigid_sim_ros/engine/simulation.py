@@ -91,7 +91,6 @@ class Simulation:
         in flight, and at the end of the step (`max_step` at most) if both were in lasting contact;
         the others stop at the end of their step.
         """
-        # asking a float whether it is a Real takes as long as the rest of a step of a few bodies
         if not (isinstance(duration, (float, Real)) and 0 <= duration < inf):
             raise ValueError(f'duration is {duration!r} s; allowed: a finite number, 0 or more')
         if duration > 0:
