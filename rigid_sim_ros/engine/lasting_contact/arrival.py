@@ -30,11 +30,11 @@ _ROUNDING = 1e-14
 """Of the step: where the search ends."""
 
 
-def meeting_time(trial, contacts, rows):
+def meeting_time(trial, contacts, rows, overlap):
     """
     Return the first time [s] at which one of some contacts closes, or None.
 
-    None means that these features do not tell: they overlap from the start on, or are round.
+    None means that these features do not tell: they touch from the start on, or are round.
 
     Parameters
     ----------
@@ -44,6 +44,8 @@ def meeting_time(trial, contacts, rows):
         At its end; those asked for overlap.
     rows : (m,) int
         Which are asked for.
+    overlap : float [m]
+        Gap, positive or negative, that counts as none.
 
     """
     end = trial.end()
@@ -52,17 +54,18 @@ def meeting_time(trial, contacts, rows):
         gap = _gap(trial, end, contacts, row)
         if gap is None:
             return None
-        time = _root(gap, trial.step, contacts.separation.item(row))
+        time = _root(gap, trial.step, contacts.separation.item(row), overlap)
         if time is None:
             return None
         first = min(first, time)
     return first
 
 
-def _root(gap, step, gap_high):
-    """Return when a gap closes that is negative after the step, or None if it was at the start."""
+def _root(gap, step, gap_high, closed):
+    """Return when a gap closes that is negative after the step, None if `closed` at its start."""
     low, gap_low, high = 0.0, gap(0.0), step
-    if gap_low <= 0.0:
+    # what touches has a gap of rounding, and its sign may not decide
+    if gap_low <= closed:
         return None
     side, time = 0, low
     for _ in range(_ROUNDS):

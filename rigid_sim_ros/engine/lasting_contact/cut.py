@@ -75,7 +75,7 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
     speed = 0.5 * limits.impact_speed
     low, high, latest, depth = 0.0, trial.step, None, np.inf
     shortest = SHORTEST * trial.step
-    time = meeting_time(trial, end_near.contacts, hits.tolist())
+    time = meeting_time(trial, end_near.contacts, hits.tolist(), overlap)
     for _ in range(_MAX_ROUNDS):
         if time is None or not low < time < high:
             time = 0.5 * (low + high)
@@ -90,7 +90,7 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
             high, latest = time, (tried, motion, around)
             if depth > _GAIN * before or high - low <= _ROUNDING * trial.step:
                 break
-            time = meeting_time(tried, around.contacts, hits.tolist())
+            time = meeting_time(tried, around.contacts, hits.tolist(), overlap)
         elif arriving(motion, around, overlap, speed).size:
             return tried, motion, around
         else:

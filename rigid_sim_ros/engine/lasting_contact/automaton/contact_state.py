@@ -271,7 +271,7 @@ class ContactState:
         """
         Resolve the impact with a restitution, a function of the speed of approach [m/s].
 
-        Return whether no point is left approaching, or none rebounds anyway.
+        Return whether all points leave that do not stay, or none rebounds anyway.
         """
         body, state = self.body, self.state
         turn = body.turn(state)
@@ -283,16 +283,16 @@ class ContactState:
             impulses = plane_impulses(body, turn, arms, velocities, shares, self._law)
             linear, angular = accelerations(body, turn, arms, impulses)
             self.state = [*state[:7], *(v + d for v, d in zip(state[7:], (*linear, *angular)))]
-            hits = [Hit(self.time, [a + b for a, b in zip(state[:3], arm)], impulse, -z)
-                    for arm, impulse, (_, _, z) in zip(arms, impulses, velocities)
-                    if -z > self._stick]
+            hits = [Hit(self.time, [a + b for a, b in zip(state[:3], arm)], impulse, -z) for
+                    arm, impulse, (_, _, z) in zip(arms, impulses, velocities) if -z > self._stick]
         after = body.velocities(self.state, arms)
         closed = [point for point, (_, _, z) in zip(points, after) if z < self._stick]
         if closed:
             self.hold(closed)
         left = body.velocities(self.state, arms)
-        done = not any(shares) or all(
-            z >= 0.0 for point, (_, _, z) in zip(points, left) if point not in closed)
+        # what the others hold has a speed of rounding, whose sign may not decide
+        done = not any(shares) or all(z > DRIFT * self.scales.speed for point, (_, _, z) in zip(
+            points, left) if point not in closed)
         if done:
             self.closed = closed
             self._unarmed.update(point for point in points if point not in closed)
