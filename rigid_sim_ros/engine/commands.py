@@ -28,6 +28,11 @@ class CommandError(ValueError):
     """A command that cannot be carried out; nothing was changed. The text is one line."""
 
 
+def shown(value):
+    """Return a value as one short line of text."""
+    return ' '.join(repr(value).split())[:80]
+
+
 def column_of_moving(name, columns, moving_names):
     """
     Return the column of a moving body.
@@ -35,9 +40,9 @@ def column_of_moving(name, columns, moving_names):
     `columns` maps all names to columns, `moving_names` are those that move, in order. Raises
     `CommandError`, with the near names if there is no such body.
     """
-    column = columns.get(name)
+    column = columns.get(name) if isinstance(name, str) else None
     if column is None:
-        raise CommandError(f'no body is named {str(name)[:80]!r}{near_names(name, moving_names)}')
+        raise CommandError(f'no body is named {shown(name)}{near_names(name, moving_names)}')
     if column >= len(moving_names):
         raise CommandError(f'{name!r} does not move: it is fixed or a plane')
     return column
@@ -48,7 +53,7 @@ def unit_quaternion(value):
     quaternion = vector('orientation', value, 4)
     length = np.sqrt(quaternion @ quaternion)
     if not 0 < length < inf:
-        raise CommandError(f'orientation is {value!r:.80}; allowed: a quaternion x, y, z, w '
+        raise CommandError(f'orientation is {shown(value)}; allowed: a quaternion x, y, z, w '
                            'that is not zero')
     return quaternion / length
 
@@ -76,27 +81,33 @@ def index_rows(value, count):
     """Return rows (k,) of `count`, all of them for None, or raise `CommandError`."""
     if value is None:
         return np.arange(count)
-    indices = np.asarray(value)
+    try:
+        indices = np.asarray(value)
+    except ValueError:
+        indices = np.empty(())
     if indices.ndim != 1 or len(indices) and indices.dtype.kind not in 'iu':
-        raise CommandError(f'indices is {value!r:.80}; allowed: whole numbers, shape (k,)')
+        raise CommandError(f'indices is {shown(value)}; allowed: whole numbers, shape (k,)')
     indices = indices.astype(np.intp)
     if len(indices) and not (0 <= indices.min() and indices.max() < count):
-        raise CommandError(f'indices is {value!r:.80}; allowed: 0 to {count - 1}')
+        raise CommandError(f'indices is {shown(value)}; allowed: 0 to {count - 1}')
     if len(np.unique(indices)) < len(indices):
-        raise CommandError(f'indices is {value!r:.80}; allowed: each body once')
+        raise CommandError(f'indices is {shown(value)}; allowed: each body once')
     return indices
 
 
 def _checked(what, value, shape):
     """Return finite numbers as an array of this shape, or raise `CommandError`."""
     try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        raise CommandError(f'{what} is {value!r:.80}; allowed: numbers, shape {shape}') from None
+        given = np.asarray(value)
+    except ValueError:
+        given = np.empty((), dtype=object)
+    if given.dtype.kind not in 'iuf':
+        raise CommandError(f'{what} is {shown(value)}; allowed: numbers, shape {shape}')
+    array = given.astype(float)
     if array.shape != shape:
         raise CommandError(f'{what} has the shape {array.shape}; allowed: {shape}')
     if not np.isfinite(array).all():
-        raise CommandError(f'{what} is {value!r:.80}; allowed: finite numbers')
+        raise CommandError(f'{what} is {shown(value)}; allowed: finite numbers')
     if not (np.abs(array) <= LARGEST).all():
-        raise CommandError(f'{what} is {value!r:.80}; allowed: at most {LARGEST:g} either way')
+        raise CommandError(f'{what} is {shown(value)}; allowed: at most {LARGEST:g} either way')
     return array

@@ -31,9 +31,6 @@ BEGIN = 1
 END = 2
 """Two bodies that were touching came apart."""
 
-KIND_NAMES = ('impact', 'begin', 'end')
-"""The name of each kind, as users read it; the kind is the index."""
-
 COLLISION = np.dtype([
     ('time', np.float64),  # [s]
     ('body_a', np.int32),
@@ -50,14 +47,24 @@ NO_EVENTS = np.zeros(0, dtype=COLLISION)
 """What most steps give."""
 
 
+GONE = -1
+"""The number of a body that is not there any more."""
+
+
+def renumbered(events, numbers):
+    """Return events with bodies of other numbers (n,), without those of bodies that are gone."""
+    a, b = numbers[events['body_a']], numbers[events['body_b']]
+    there = (a != GONE) & (b != GONE)
+    events = events[there]
+    events['body_a'], events['body_b'] = a[there], b[there]
+    return events
+
+
 class EventLog:
     """Events in the order in which they are found, handed out in order of time."""
 
     def __init__(self):
         self._rows = []
-
-    def __len__(self):
-        return len(self._rows)
 
     @property
     def struck(self):
@@ -73,9 +80,11 @@ class EventLog:
         """
         self._rows.append((time, a, b, kind, *point, *normal, *impulse, speed))
 
-    def clear(self):
-        """Forget all events."""
-        self._rows.clear()
+    def renumber(self, numbers):
+        """Let bodies have other numbers (n,), and forget events of bodies that are gone."""
+        rows = ((time, int(numbers[int(a)]), int(numbers[int(b)]), *rest)
+                for time, a, b, *rest in self._rows)
+        self._rows = [row for row in rows if GONE not in row[1:3]]
 
     def take(self):
         """

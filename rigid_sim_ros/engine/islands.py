@@ -27,7 +27,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
 from rigid_sim_ros.engine.graph import component_labels
-from rigid_sim_ros.engine.lasting_contact import advance_island, Island
+from rigid_sim_ros.engine.lasting_contact import advance_island, FEW, Island
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
 from rigid_sim_ros.engine.reach import passed_on, Reach, REACH_FACTOR, within
@@ -43,12 +43,6 @@ somebody has moved so far: what rests need not look again.
 
 SKIN_STEPS = 8
 """Bodies are slow if the skin lasts for at least so many steps."""
-
-FEW_TOGETHER = 6
-"""
-Bodies that touch others which are stepped island by island, to second order where they are few;
-more are stepped all together, as one pile.
-"""
 
 CROWD = 24
 """Bodies in lasting contact above which all of them are one pile."""
@@ -228,10 +222,10 @@ def _with_the_many(labels, members):
     """
     Return the labels (n,) with those of all groups of several members made one, if they are many.
 
-    One pile of all of them costs less than as many islands.
+    One pile of all of them costs less than as many islands of few.
     """
     sizes = np.bincount(labels[members], minlength=len(labels))
-    if sizes[sizes > 1].sum() <= FEW_TOGETHER:
+    if sizes[sizes > 1].sum() <= FEW:
         return labels
     several = sizes[labels] > 1
     return np.where(several, labels[several][0], labels)

@@ -21,25 +21,25 @@ from numbers import Real
 
 import numpy as np
 
-from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.bodies import bodies_of
+from rigid_sim_ros.engine.body_checks import check_body
 from rigid_sim_ros.engine.commands import (
-    column_of_moving, CommandError, index_rows, unit_quaternion, vector, vector_rows)
-from rigid_sim_ros.engine.events import EventLog
+    column_of_moving, CommandError, index_rows, shown, unit_quaternion, vector, vector_rows)
+from rigid_sim_ros.engine.events import EventLog, GONE, renumbered
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.engine.model import Scene
+from rigid_sim_ros.engine.readings import Readings
 from rigid_sim_ros.engine.state import state_after, state_of
 from rigid_sim_ros.engine.work import Work
 from rigid_sim_ros.engine.world import World
 
 
-class Simulation:
+class Simulation(Readings):
     """
     A scene in motion.
 
-    Vectors are in world axes, SI units, radians; quaternions x, y, z, w, body to world. Rows of
-    all arrays are the moving bodies in the order of `names`. What a property returned stays as it
-    was when the simulation goes on.
+    Vectors are in world axes, SI units, radians; quaternions x, y, z, w, body to world. What can
+    be read of it is in `Readings`.
 
     Parameters
     ----------
@@ -47,7 +47,8 @@ class Simulation:
         What to simulate; made by `rigid_sim_ros.scene.load_scene`.
     method : str
         'exact' (default): flight as a formula, impacts at their instant, steps in lasting contact
-        only. 'stepped': every body in semi-implicit steps. 'report': the student report's engine.
+        only. 'stepped': every body in semi-implicit steps. 'report': the student report's engine,
+        which refuses spheres with a ValueError.
     max_step : float
         Longest step [s] of lasting contact, or of everything in the two methods that step.
 
@@ -55,12 +56,12 @@ class Simulation:
 
     def __init__(self, scene, method='exact', max_step=1 / 240):
         if not isinstance(scene, Scene):
-            raise TypeError(f'scene is {scene!r:.80}; allowed: a Scene, as load_scene returns')
+            raise TypeError(f'scene is {shown(scene)}; allowed: a Scene, as load_scene returns')
         if method not in METHODS:
             raise ValueError(f'method is {method!r}; allowed: {", ".join(METHODS)}')
-        if not 0 < max_step < inf:
-            raise ValueError(f'max_step is {max_step!r} s; allowed: a positive number')
-        self.method, self.max_step = method, float(max_step)
+        if not (isinstance(max_step, Real) and 0 < max_step < inf):
+            raise ValueError(f'max_step is {shown(max_step)} s; allowed: a positive number')
+        self._method_name, self._max_step = method, float(max_step)
         self._start, self._duration = scene, 0.0
         self._coming_times = self._times_if_repeated
         self.reset()
@@ -77,11 +78,6 @@ class Simulation:
 
     # -- time ----------------------------------------------------------------------------------
 
-    @property
-    def time(self):
-        """Return how much time has been simulated since the start [s]."""
-        return self._method.time
-
     def advance(self, duration, until_collision=False):
         """
         Advance by exactly `duration` [s], zero or more; `collisions` are then those of it.
@@ -90,9 +86,13 @@ class Simulation:
         softly, or was there, is none. Method 'exact' stops at its instant if one of the bodies was
         in flight, and at the end of the step (`max_step` at most) if both were in lasting contact;
         the others stop at the end of their step.
+
+        ArithmeticError and numpy.linalg.LinAlgError say that a motion has outgrown the numbers it
+        is computed with, as speeds of 1e30 m/s do: only `reset` helps then.
         """
         if not (isinstance(duration, (float, Real)) and 0 <= duration < inf):
-            raise ValueError(f'duration is {duration!r} s; allowed: a finite number, 0 or more')
+            raise ValueError(
+                f'duration is {shown(duration)} s; allowed: a finite number, 0 or more')
         if duration > 0:
             self._duration = duration
             self._method.advance(float(duration), until_collision)
@@ -105,84 +105,6 @@ class Simulation:
         What is read is the same to the bit, but takes less time if the durations vary.
         """
         self._coming_times = coming_times
-
-    # -- what can be read ----------------------------------------------------------------------
-
-    @property
-    def names(self):
-        """Return the names of the moving bodies in scene order, the order of all rows."""
-        return self._world.bodies.names[:self._world.bodies.moving_count]
-
-    @property
-    def all_names(self):
-        """Return `names`, then fixed bodies, then planes: what `body_a` and `body_b` index."""
-        return self._world.bodies.names
-
-    @property
-    def position(self):
-        """Return the centres of mass [m], (n, 3)."""
-        return self._rows(self._method.state.position)
-
-    @property
-    def orientation(self):
-        """Return unit quaternions x, y, z, w, body to world, (n, 4)."""
-        return self._rows(self._method.state.orientation)
-
-    @property
-    def linear_velocity(self):
-        """Return the velocities of the centres of mass [m/s], (n, 3), world axes."""
-        return self._rows(self._method.state.linear_velocity)
-
-    @property
-    def angular_velocity(self):
-        """Return the angular velocities [rad/s], (n, 3), world axes."""
-        return self._rows(self._method.state.angular_velocity)
-
-    @property
-    def force(self):
-        """Return the held forces besides gravity [N], (n, 3), world axes."""
-        return self._rows(self._method.state.force)
-
-    @property
-    def torque(self):
-        """Return the held torques [N m], (n, 3), world axes."""
-        return self._rows(self._method.state.torque)
-
-    @property
-    def collisions(self):
-        """Return the events of the last advance in order of time, of dtype `events.COLLISION`."""
-        return self._collisions
-
-    @property
-    def asleep(self):
-        """Return whether each body rests and is skipped until something wakes it, (n,) bool."""
-        return self._method.asleep
-
-    @property
-    def work(self):
-        """Return what has been done since the start: a `work.Work` of counters."""
-        return self._work
-
-    @property
-    def scene(self):
-        """Return the `model.Scene` with the bodies there are now, each as it was at the start."""
-        return self._scene
-
-    def energy(self):
-        """Return the kinetic and gravitational energy [J], zero at rest at the origin."""
-        return diagnostics.energy(self._world.bodies, self._world.gravity, self._method.state)
-
-    def momentum(self):
-        """Return the momentum of all moving bodies [kg m/s], (3,)."""
-        return diagnostics.momentum(self._world.bodies, self._method.state)
-
-    def angular_momentum(self):
-        """Return the angular momentum (3,) of all moving bodies about the origin [kg m^2/s]."""
-        return diagnostics.angular_momentum(self._world.bodies, self._method.state)
-
-    def penetration(self):
-        """Return how deep the deepest pair of bodies overlaps [m], zero if none does."""
-        return diagnostics.penetration(self._world.bodies, self._method.state)
 
     # -- commands ------------------------------------------------------------------------------
 
@@ -256,44 +178,52 @@ class Simulation:
         """
         Add a `model.Body`, as it is, at once; a row is added to all arrays.
 
-        Raises `CommandError` if the name is taken.
+        `collisions` are from now on as if it had been there all the time. Raises `CommandError` if
+        the name is taken, a number is not one a body can have, or the method does not know the
+        shape. What it overlaps with pushes it away.
         """
+        check_body(body)
         if body.name in self._index:
-            raise CommandError(f'there is already something named {body.name!r}')
+            raise CommandError(f'there is already something named {shown(body.name)}')
         self._change_scene((*self._scene.bodies, body))
 
     def remove(self, name):
-        """Take a body, moving or fixed, out at once; raises `CommandError` if there is none."""
+        """
+        Take a body, moving or fixed, out at once; raises `CommandError` if there is none.
+
+        Out of `collisions` too.
+        """
         remaining = tuple(body for body in self._scene.bodies if body.name != name)
         if len(remaining) == len(self._scene.bodies):
-            raise CommandError(f'no body is named {str(name)[:80]!r}')
+            raise CommandError(f'no body is named {shown(name)}')
         self._change_scene(remaining)
 
     # -- inside --------------------------------------------------------------------------------
 
     def _build(self, scene, state, time):
-        """Simulate this scene from this state and time [s] on."""
-        self._scene, bodies = scene, bodies_of(scene)
-        self._world = World(
-            bodies, np.array(scene.gravity, dtype=float), scene.impact_law, self.max_step,
+        """Simulate this scene from this state and time [s] on; or raise and change nothing."""
+        bodies = bodies_of(scene)
+        world = World(
+            bodies, np.array(scene.gravity, dtype=float), scene.impact_law, self._max_step,
             self._events, self._work, lambda count: self._coming_times(count))
-        self._method = METHODS[self.method](self._world, state, time)
+        self._method = METHODS[self._method_name](world, state, time)
+        self._scene, self._world = scene, world
         self._index = {name: index for index, name in enumerate(bodies.names)}
 
     def _change_scene(self, bodies):
         """Go on with other bodies; those that were there before go on as they are."""
-        scene = replace(self._scene, bodies=bodies)
-        self._build(scene, state_after(self._method.state, self._index, scene), self.time)
+        scene, before = replace(self._scene, bodies=bodies), self.all_names
+        try:
+            self._build(scene, state_after(self._method.state, self._index, scene), self.time)
+        except ValueError as error:
+            raise CommandError(str(error)) from None
+        numbers = np.array([self._index.get(name, GONE) for name in before], dtype=int)
+        self._collisions = renumbered(self._collisions, numbers)
+        self._events.renumber(numbers)
 
     def _times_if_repeated(self, count):
         """Return the next times [s] if the last duration is repeated, added up as it is."""
         return list(accumulate(repeat(self._duration, count), initial=self.time))[1:]
-
-    def _rows(self, columns):
-        """Return the moving bodies' columns of an array (c, n) as rows that cannot be written."""
-        rows = columns[:, :self._world.bodies.moving_count].T
-        rows.flags.writeable = False
-        return rows
 
     def _set_motion(self, indices, values):
         if values and len(indices):

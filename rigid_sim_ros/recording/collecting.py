@@ -116,7 +116,10 @@ class Collected:
             'time_ns': np.array(source.time_ns, dtype=np.int64),
             'run': np.array(source.run, dtype=int),
             **self._columns(source, partners, casts, names),
-            'collisions': self._events(all_names)}
+            'collisions': self._events(all_names),
+            'collision_run': np.repeat([run for _, run, _ in self._collisions],
+                                       [len(events) for *_, events in self._collisions]
+                                       ).astype(int)}
 
     # -- messages ------------------------------------------------------------------------------
 
@@ -141,7 +144,8 @@ class Collected:
         self._states.add(message.time_ns, self._run, len(self._casts) - 1, state.names, rows)
 
     def _take_collisions(self, message):
-        self._collisions.append((len(self._casts) - 1, decode_collisions(message.data)))
+        self._collisions.append(
+            (len(self._casts) - 1, self._run, decode_collisions(message.data)))
 
     def _take_scene(self, message):
         self.scene = self.scene or decode_string(message.data)
@@ -182,7 +186,7 @@ class Collected:
         """Return the collisions, with indices into these names."""
         place = {name: index for index, name in enumerate(all_names)}
         parts = [np.zeros(0, COLLISION_TYPE)]
-        for cast, events in self._collisions:
+        for cast, _, events in self._collisions:
             table = [place[name] for name in self._casts[cast].all_names or ()]
             if table != list(range(len(table))) or cast:
                 for key in ('body_a', 'body_b'):

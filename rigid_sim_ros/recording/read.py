@@ -74,6 +74,9 @@ class Recording:
     A body that is -1 is one whose name got lost with a damaged part of the bag.
     """
 
+    collision_run: np.ndarray
+    """How often time had gone back before each event, (E,)."""
+
     commands: list
     """Every `BagMessage` of a command topic or the journal, in the order they took effect."""
 

@@ -17,17 +17,15 @@ The values of a scene file: what each kind of value may be, and reading them by 
 
 A reader takes a plain value and returns it as the model wants it, or raises `NotAllowed` with
 what is allowed; `Section` adds file, body, key and the value given. Numbers are limited to
-1e30 in size so that squares and products of a few of them stay finite.
+`LARGEST` in size; sizes, masses and inertias may not be below its inverse either.
 """
 
 from math import isfinite, sqrt
 from numbers import Integral, Real
 
 import numpy as np
+from rigid_sim_ros.engine.commands import LARGEST
 from rigid_sim_ros.scene.errors import listed, nearest, SceneError, shown
-
-LARGEST = 1e30
-"""Largest number, in any unit; sizes, masses and inertias may not be below its inverse."""
 
 UNIT_TOLERANCE = 1e-3
 """A vector this near to unit length is taken as rounded by hand, and normalised."""

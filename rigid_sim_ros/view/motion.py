@@ -139,11 +139,12 @@ class RecordedMotion(Motion):
         if not whole.any():
             raise ViewError(f'{path}: has poses of {there[0].sum()} bodies, but its scene has '
                             f'{self.moving_count} that move')
-        chosen = whole & (recorded.run == np.argmax(np.bincount(recorded.run[whole])))
+        run = np.argmax(np.bincount(recorded.run[whole]))
+        chosen = whole & (recorded.run == run)
         self._time = recorded.time[chosen]
         self._position = recorded.position[chosen, :self.moving_count]
         self._orientation = recorded.orientation[chosen, :self.moving_count]
-        self._collisions = recorded.collisions
+        self._collisions = recorded.collisions[recorded.collision_run == run]
         self.end = float(self._time[-1])
 
     def states(self, times, progress=iter):

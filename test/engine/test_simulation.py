@@ -179,6 +179,13 @@ def test_commands_for_all_bodies_at_once():
     (lambda s: s.set_velocity('cube_1', linear=(float('nan'),) * 3), 'linear velocity .* finite'),
     (lambda s: s.set_velocity('cube_1', linear=(0, 1e31, 0)), r'linear velocity .* 1e\+30'),
     (lambda s: s.set_pose('cube_1', orientation=(0, 0, 0, 0)), 'orientation .* not zero'),
+    (lambda s: s.apply_wrench('cube_1', force=('1', '2', '3')), 'allowed: numbers'),
+    (lambda s: s.apply_wrench('cube_1', force=(1j, 0, 0)), 'allowed: numbers'),
+    (lambda s: s.apply_wrench('cube_1', force=(10 ** 400, 0, 0)), 'allowed: numbers'),
+    (lambda s: s.apply_wrench('cube_1', force=np.ones((40, 3))), r'the shape \(40, 3\)'),
+    (lambda s: s.apply_wrench('cube_1', force=np.full((40, 3), 'x')), 'allowed: numbers'),
+    (lambda s: s.apply_wrench(['cube_1']), r"no body is named \['cube_1'\]"),
+    (lambda s: s.set_velocities(np.zeros((1, 3)), indices=[[0], [0, 1]]), 'whole numbers'),
     (lambda s: s.apply_wrenches(np.zeros((2, 3)), np.zeros((1, 3))), r'forces .*\(1, 3\)'),
     (lambda s: s.set_velocities(np.zeros((1, 3)), np.full((1, 3), np.inf)), 'angular .* finite'),
 ])
@@ -200,6 +207,8 @@ def test_bad_commands_change_nothing(command, message):
     ({'method': 'magic'}, "method is 'magic'; allowed: exact, stepped, report"),
     ({'max_step': 0.0}, 'max_step is 0.0 s; allowed: a positive number'),
     ({'max_step': float('nan')}, 'max_step is nan'),
+    ({'max_step': '1'}, "max_step is '1' s; allowed: a positive number"),
+    ({'max_step': None}, 'max_step is None s'),
 ])
 def test_bad_options_are_refused(arguments, message):
     """What is allowed is in the message."""
@@ -232,6 +241,13 @@ def test_what_was_read_stays_as_it_was():
         assert not np.array_equal(simulation.position, before)
         with pytest.raises(ValueError):
             simulation.position[0, 0] = 1.0
+        work = simulation.work
+        simulation.advance(0.1)
+        assert work != simulation.work
+        with pytest.raises(AttributeError):
+            simulation.method = 'magic'
+        with pytest.raises(AttributeError):
+            simulation.max_step = 1.0
 
 
 def test_names_are_moving_then_fixed_then_planes():

@@ -67,7 +67,7 @@ def bag(tmp_path):
         poses = messages.PoseArrayEncoder('world', body_count)
         collisions = messages.CollisionEncoder('world')
         event = np.zeros(1, messages.COLLISION_TYPE)
-        event['time'], event['body_b'], event['kind'] = 0.05, 2, events.IMPACT
+        event['body_b'], event['kind'] = 2, events.IMPACT
         with Recorder(tmp_path / 'bag', ROWS, scene=scene, options={}) as recorder:
             for run, count in enumerate(runs):
                 for step in range(count):
@@ -77,6 +77,8 @@ def bag(tmp_path):
                     recorder.write('/rigid_sim/poses', time_ns,
                                    poses.encode(time_ns, position, orientation))
                     if step == 3:
+                        # of each run at another time
+                        event['time'] = 0.05 - 0.01 * run
                         recorder.write('/rigid_sim/collisions', time_ns,
                                        collisions.encode(time_ns, event))
         return str(tmp_path / 'bag')
@@ -98,6 +100,8 @@ def test_the_longest_run_is_shown(bag):
     motion = open_motion(bag(3, 9, 5))
     assert motion.end == pytest.approx(0.16)
     assert motion.states([0.16]).position[0, 0, 0] == 108
+    assert motion.first_collision() == pytest.approx(0.04)
+    assert [len(contacts) for contacts in motion.states([0.06, 0.145]).contacts] == [1, 0]
 
 
 def test_a_recording_of_one_state(bag):

@@ -19,7 +19,7 @@ Build an `Island` of its members and of the pairs that may touch, and `advance_i
 step, as long as members and pairs stay the same.
 """
 
-from rigid_sim_ros.engine.lasting_contact.advance import advance_island, Outcome
+from rigid_sim_ros.engine.lasting_contact.advance import advance_island, FEW, Outcome
 from rigid_sim_ros.engine.lasting_contact.island import Island
 
-__all__ = ['advance_island', 'Island', 'Outcome']
+__all__ = ['advance_island', 'FEW', 'Island', 'Outcome']

@@ -18,7 +18,6 @@ The first instant at which bodies in flight touch, to rounding; none is missed.
 `march` is the method, `pair_lines` what it needs to know of each pair of shapes.
 """
 
-from rigid_sim_ros.engine.time_of_impact.first_touch import (
-    first_touch, first_touches, touching_contacts)
+from rigid_sim_ros.engine.time_of_impact.first_touch import first_touch, first_touches
 
-__all__ = ['first_touch', 'first_touches', 'touching_contacts']
+__all__ = ['first_touch', 'first_touches']

@@ -17,7 +17,7 @@
 import numpy as np
 
 from rigid_sim_ros.engine.bodies import PLANE
-from rigid_sim_ros.engine.narrow_phase import find_contacts, PairGroups, PAIRS
+from rigid_sim_ros.engine.narrow_phase import PairGroups, PAIRS
 from rigid_sim_ros.engine.narrow_phase.solids import smaller_size
 from rigid_sim_ros.engine.time_of_impact.march import march
 from rigid_sim_ros.engine.time_of_impact.pair_lines import PairLines
@@ -32,9 +32,6 @@ FEW = 8
 PLAIN_LINES = {('box', 'box'): box_box, ('box', PLANE): box_plane, ('sphere', 'box'): sphere_box,
                ('sphere', PLANE): sphere_plane, ('sphere', 'sphere'): sphere_sphere}
 """The same rows as `pair_lines.LINES`."""
-
-TOUCH_MARGIN = 1e-9
-"""Points nearer than this part of the size meet at the same instant."""
 
 
 def first_touches(bodies, flights, pairs_a, pairs_b, start, end, guarded):
@@ -110,14 +107,3 @@ def _first_touch(bodies, flights, a, b, start, end, armed):
         other = PlainBody(bodies, flights, b, start, end),
         size = min(one.radius, other[0].radius)
     return march_one(PLAIN_LINES[kinds](one, *other, end), size, start, end, armed)
-
-
-def touching_contacts(bodies, flights, pairs_a, pairs_b, time):
-    """
-    Return all contact points of pairs (p,) that touch at `time` [s], as `Contacts`.
-
-    Those within 1e-9 of the size of the pair: a face that lands flat lands with all its corners.
-    """
-    position, orientation = flights.poses(time)
-    size = np.minimum(bodies.bounding_radius[pairs_a], bodies.bounding_radius[pairs_b])
-    return find_contacts(bodies, pairs_a, pairs_b, position, orientation, TOUCH_MARGIN * size)

@@ -19,7 +19,7 @@ import numpy as np
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.model import Body, Plane, Scene
-from rigid_sim_ros.engine.narrow_phase import PairGroups
+from rigid_sim_ros.engine.narrow_phase import find_contacts, PairGroups
 
 GRAVITY = 9.81
 
@@ -70,3 +70,9 @@ class Flying:
                 low, high = (middle, high) if apart else (low, middle)
             result[pair] = high
         return result, distance.min(axis=1)
+
+
+def touching_contacts(bodies, flights, pairs_a, pairs_b, time):
+    """Return all contact points of pairs (p,) within 1e-9 of their size at `time` [s]."""
+    size = np.minimum(bodies.bounding_radius[pairs_a], bodies.bounding_radius[pairs_b])
+    return find_contacts(bodies, pairs_a, pairs_b, *flights.poses(time), 1e-9 * size)

@@ -14,7 +14,7 @@
 
 """Instants of first touch, against closed forms and against sampling with bisection."""
 
-from flying import Flying, GRAVITY
+from flying import Flying, GRAVITY, touching_contacts
 
 import numpy as np
 
@@ -22,7 +22,7 @@ import pytest
 
 from rigid_sim_ros.engine.rotation import from_rotation_vector, matrix
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
-from rigid_sim_ros.engine.time_of_impact import first_touches, touching_contacts
+from rigid_sim_ros.engine.time_of_impact import first_touches
 
 GROUND = [((0.0, 0.0, 1.0), 0.0)]
 FALLING = [(0.0, 0.0, -GRAVITY)]

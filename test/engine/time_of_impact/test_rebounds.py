@@ -14,7 +14,7 @@
 
 """Pairs that fall upon each other again and again: touch, rebound, go on guarded, touch."""
 
-from flying import Flying
+from flying import Flying, touching_contacts
 
 import numpy as np
 
@@ -22,7 +22,7 @@ import pytest
 
 from rigid_sim_ros.engine.rotation import matrix
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
-from rigid_sim_ros.engine.time_of_impact import first_touches, touching_contacts
+from rigid_sim_ros.engine.time_of_impact import first_touches
 
 A, B = np.array([0]), np.array([1])
 PULL = 8.0  # [m/s^2], of each towards where the other started

@@ -96,14 +96,14 @@ def _touching(automaton, step):
             if after[point] < before[point]:
                 found.append((point, step.size))
         elif min(before[point], after[point]) < reach:
-            time = _lowest(body, step, point, before[point], after[point])
+            time = _lowest(body, step, point)
             if time is not None and body.gaps(
                     step.between(time))[point] < automaton.level(point):
                 found.append((point, time))
     return found
 
 
-def _lowest(body, step, point, before, after):
+def _lowest(body, step, point):
     """Return when in a step a point that falls and rises is lowest [s], or None."""
     falling = velocity_of(body, step.start, point)[2]
     rising = velocity_of(body, step.end, point)[2]
