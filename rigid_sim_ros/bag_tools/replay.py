@@ -35,6 +35,8 @@ def main(arguments=None):
     options = _parser().parse_args(arguments)
     try:
         changes = _changes(options.changes)
+        if options.plot and not os.path.isdir(os.path.dirname(options.plot) or '.'):
+            raise RecordingError(f'--plot {options.plot}: there is no such folder')
         duration = _duration(options.bag)
         resimulation = Resimulation(options.bag, changes)
         if changes:
@@ -133,14 +135,20 @@ def _deviate(resimulation, duration, options):
 def _report(deviations, resimulation, options):
     for line in deviations.report():
         print(line)
-    path = options.plot or os.path.abspath(options.bag) + '_deviations.png'
+    path = _plot_path(options)
     try:
         deviations.plot(path)
     except ImportError:
         print('no plot: matplotlib is not installed')
+    except (OSError, ValueError) as error:
+        print(f'no plot: {error}')
     else:
         print(f'plot: {path}')
     _tell_damage(resimulation)
+
+
+def _plot_path(options):
+    return options.plot or os.path.abspath(options.bag) + '_deviations.png'
 
 
 def _tell_damage(resimulation):

@@ -14,6 +14,7 @@
 
 """The command `rigid_sim_benchmark report`: tables and plots from results measured before."""
 
+from importlib.util import find_spec
 from pathlib import Path
 
 from rigid_sim_ros.benchmark.errors import BenchmarkError, chosen
@@ -47,6 +48,7 @@ def add_output_options(parser):
 
 def run(options):
     """Run the command with its parsed options."""
+    check_outputs(options)
     wanted = chosen('problem', options.problems, list(PROBLEMS))
     cells, facts = {}, None
     for path in options.results:
@@ -59,6 +61,15 @@ def run(options):
         print(terminal_table(problem, [row for row in results if row.problem == problem]),
               end='\n\n')
     write_reports(options, results, facts)
+
+
+def check_outputs(options):
+    """Raise `BenchmarkError` for outputs that could not be written in the end."""
+    if options.markdown and not options.markdown.parent.is_dir():
+        raise BenchmarkError(f'--markdown {options.markdown}: there is no folder '
+                             f'{options.markdown.parent}')
+    if options.plots and not find_spec('matplotlib'):
+        raise BenchmarkError('--plots needs matplotlib: pip install matplotlib')
 
 
 def write_reports(options, results, facts):
@@ -79,6 +90,8 @@ def _read(path):
         results, facts = read_csv(path)
     except (OSError, ValueError, KeyError) as error:
         raise BenchmarkError(f'{path} is not a file of results: {error}') from None
+    if not facts:
+        raise BenchmarkError(f'{path} does not say on what machine its results were measured')
     unknown = [row.problem for row in results if row.problem not in PROBLEMS]
     if unknown:
         raise BenchmarkError(f'{path} has results of an unknown problem: {unknown[0]}')

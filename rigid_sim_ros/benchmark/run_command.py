@@ -27,7 +27,8 @@ from rigid_sim_ros.benchmark.measuring import Effort, measure
 from rigid_sim_ros.benchmark.problems import FRAME_RATE, PROBLEMS
 from rigid_sim_ros.benchmark.processes import Worker
 from rigid_sim_ros.benchmark.report import terminal_table
-from rigid_sim_ros.benchmark.report_command import add_output_options, write_reports
+from rigid_sim_ros.benchmark.report_command import (
+    add_output_options, check_outputs, write_reports)
 from rigid_sim_ros.benchmark.results import write_csv
 from rigid_sim_ros.scene import load_scene
 from tqdm import tqdm
@@ -127,3 +128,6 @@ def _check(options):
         raise BenchmarkError(f'--timeout {options.timeout:g}; allowed: a positive number')
     if not options.no_plots and not find_spec('matplotlib'):
         raise BenchmarkError('plots need matplotlib: pip install matplotlib, or say --no-plots')
+    if not find_spec('mpmath'):
+        raise BenchmarkError('exact answers need mpmath: pip install mpmath')
+    check_outputs(options)

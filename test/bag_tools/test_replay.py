@@ -122,6 +122,15 @@ def test_a_run_with_commands_and_resets_is_identical(eventful, capsys):
     assert f'{2 * (30 + 3)} messages up to 0.050000000 s' in output
 
 
+def test_a_plot_that_cannot_be_written_takes_nothing_else_away(eventful, tmp_path, capsys):
+    """A folder that is not there is told before it simulates; what else, at the end."""
+    arguments = [str(eventful), '--with', 'max_step=0.001', '--plot']
+    assert replay.main([*arguments, str(tmp_path / 'none' / 'plot.png')]) == 2
+    assert 'there is no such folder' in capsys.readouterr().err
+    assert replay.main([*arguments, str(tmp_path / 'plot.unknown')]) in (0, 1)
+    assert 'no plot: ' in capsys.readouterr().out
+
+
 def test_bouncing_with_the_baseline_method_is_identical_collisions_too(tmp_path, capsys):
     scene = SCENE.replace('100]', '0.3]').replace('sphere: {radius: 0.1}', 'cube: {edge: 0.2}')
     scene += 'planes: [{name: ground}]\n'

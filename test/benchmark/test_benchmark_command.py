@@ -17,6 +17,7 @@
 import csv
 
 import pytest
+from rigid_sim_ros.benchmark import report_command, run_command
 from rigid_sim_ros.benchmark.engines import ENGINES
 from rigid_sim_ros.benchmark.machine import machine_facts, processor_name
 from rigid_sim_ros.benchmark.main import main
@@ -208,3 +209,29 @@ def test_tosses_of_a_cube_that_only_flies(tmp_path, capsys):
     assert 'friction 0.2, restitution 0.1' in row
     # what is only flight is what the fit was made of
     assert row.split()[-4:-1] == ['0.0', '0.0', '100']
+
+
+def test_outputs_that_cannot_be_written_are_told_before_anything_is_measured(tmp_path, capsys):
+    path = tmp_path / 'results.csv'
+    write_csv(path, SOME, FACTS)
+    for command in (['run', 'slide', '--no-plots', '--output', str(tmp_path / 'out')],
+                    ['report', str(path)]):
+        assert main([*command, '--markdown', str(tmp_path / 'none' / 'tables.md')]) == 2
+        shown = capsys.readouterr()
+        assert 'there is no folder' in shown.err and not shown.out
+    assert not (tmp_path / 'out').exists()
+    bare = tmp_path / 'bare.csv'
+    bare.write_text(''.join(line for line in path.read_text().splitlines(keepends=True)
+                            if not line.startswith('#')))
+    assert main(['report', str(bare)]) == 2
+    assert 'does not say on what machine' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('missing, arguments', [
+    ('mpmath', ['run', 'slide', '--no-plots']), ('matplotlib', ['run', 'slide']),
+    ('matplotlib', ['report', 'results.csv', '--plots', '.'])])
+def test_what_is_not_installed_is_told_first(missing, arguments, monkeypatch, capsys):
+    for module in (report_command, run_command):
+        monkeypatch.setattr(module, 'find_spec', lambda name: None if name == missing else name)
+    assert main(arguments) == 2
+    assert f'pip install {missing}' in capsys.readouterr().err

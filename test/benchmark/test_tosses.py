@@ -145,6 +145,8 @@ def test_tosses_are_read_with_true_lengths(tmp_path):
 def test_missing_array_and_other_files_are_refused(tmp_path):
     with pytest.raises(BenchmarkError, match="no array 'edge_m'; needed: offset, t, position"):
         read_tosses(write(tmp_path / 'tosses.npz', edge_m=None))
+    with pytest.raises(BenchmarkError, match='has arrays of other shapes'):
+        read_tosses(write(tmp_path / 'tosses.npz', quaternion=np.ones((3, 2))))
     other = tmp_path / 'other.npz'
     other.write_text('something else')
     with pytest.raises(BenchmarkError, match='is not an archive of tosses'):

@@ -115,7 +115,11 @@ def _run_engine(name, worker, tosses, starts, grid, options):
     tasks = [_task(name, toss, start, fit.parameters, options)
              for toss, start in zip(tosses, starts)]
     once = TimingPlan(repeats=1, least_time=0.0, budget=options.timeout)
-    time = sum(worker.ask(task, once, 2 * options.timeout).run for task in tasks)
+    try:
+        time = sum(worker.ask(task, once, 2 * options.timeout).run for task in tasks)
+    except RunFailed as error:
+        print(f'{title}: failed when timed with {_text(fit.parameters)}: {error}')
+        return
     print(f'{title:20}{_text(fit.parameters):24}{_figures(fit.fitted)}{time:14.3g}')
     if len(grid) > 1:
         print(f'{"":20}{"  unseen halves":24}{_figures(fit.unseen)}', flush=True)

@@ -75,8 +75,11 @@ def read_tosses(path, length_scale=LENGTH_SCALE):
             arrays = {name: file[name] for name in ARRAYS}
     except (OSError, ValueError, zipfile.BadZipFile) as error:
         raise BenchmarkError(f'{path} is not an archive of tosses: {error}') from None
-    return [_toss(arrays, slice(first, last), length_scale)
-            for first, last in zip(arrays['offset'][:-1], arrays['offset'][1:])]
+    try:
+        return [_toss(arrays, slice(first, last), length_scale)
+                for first, last in zip(arrays['offset'][:-1], arrays['offset'][1:])]
+    except (IndexError, TypeError, ValueError) as error:
+        raise BenchmarkError(f'{path} has arrays of other shapes: {error}') from None
 
 
 def _toss(arrays, samples, length_scale):
