@@ -17,6 +17,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.messages import (
     decode_collisions, decode_pose_array, MessageError, MultiDOFJointStateDecoder)
 
@@ -102,7 +103,7 @@ class Deviations:
         if not len(names):
             return
         distance = np.linalg.norm(recorded.position - again.position, axis=1)
-        angle = _angle(recorded.orientation, again.orientation)
+        angle = rotation.angle_between(recorded.orientation.T, again.orientation.T)
         for found, values in ((self.distances, distance), (self.angles, angle)):
             worst = int(np.argmax(values))
             found.append(_Deviation(
@@ -146,9 +147,3 @@ class Deviations:
         axes[1].set_xlabel('simulated time [s]')
         figure.savefig(path)
         pyplot.close(figure)
-
-
-def _angle(a, b):
-    """Return the angle [rad] between attitudes, (n, 4) each, accurate for small ones too."""
-    b = np.where(np.sum(a * b, axis=1, keepdims=True) < 0, -b, b)
-    return 4 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))

@@ -17,6 +17,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from rigid_sim_ros.engine import rotation
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,5 @@ def fault(trajectory, scene, reach):
 
 def angles_between(p, q):
     """Return the angles [rad] between unit quaternions (..., 4), accurate also when tiny."""
-    p, q = np.asarray(p), np.asarray(q)
-    scalar = (p * q).sum(axis=-1)
-    vector = (p[..., 3:] * q[..., :3] - q[..., 3:] * p[..., :3]
-              - np.cross(p[..., :3], q[..., :3]))
-    return 2 * np.arctan2(np.linalg.norm(vector, axis=-1), np.abs(scalar))
+    p, q = np.broadcast_arrays(p, q)
+    return rotation.angle_between(np.moveaxis(p, -1, 0), np.moveaxis(q, -1, 0))
