@@ -23,7 +23,7 @@ from rigid_sim_ros.nodes.commands import largest
 from rigid_sim_ros.nodes.counted_warnings import near_names, shown
 from rigid_sim_ros.scene import load_scene, SceneError, values
 from rigid_sim_ros.scene.overlap import deepest_overlap
-import yaml
+from rigid_sim_ros.scene.yaml_values import parse_yaml
 
 SOME_NAME = 'body'
 """What a body is called that comes without a name."""
@@ -57,18 +57,21 @@ def described_body(text, uri):
     with one body, or what stands for one body in a scene file, with or without its name.
     """
     try:
-        source = uri
-        if text:
-            content = yaml.safe_load(text)
-            if isinstance(content, dict) and 'bodies' not in content:
-                content = {'bodies': [{'name': SOME_NAME, **content}]}
-            source = content if isinstance(content, dict) else text + '\n'
-        bodies = load_scene(source).bodies
-    except (SceneError, TypeError, yaml.YAMLError) as error:
-        raise BadDescription(' '.join(str(error).split())) from error
+        bodies = load_scene(_described_scene(text) if text else uri).bodies
+    except SceneError as error:
+        raise BadDescription(str(error)) from error
     if len(bodies) != 1:
         raise BadDescription(f'the description has {len(bodies)} bodies; one is needed')
     return bodies[0]
+
+
+def _described_scene(text):
+    """Return what `load_scene` takes for a description; raises `SceneError`."""
+    content = parse_yaml(text, 'description')
+    if not isinstance(content, dict):
+        # read as a whole scene, it is refused in the words for that
+        return text + '\n'
+    return content if 'bodies' in content else {'bodies': [{'name': SOME_NAME, **content}]}
 
 
 class Entities:
@@ -86,7 +89,7 @@ class Entities:
         """Return the names in which a regular expression is found; raises `EntityError`."""
         try:
             found = re.compile(pattern).search
-        except re.error as error:
+        except (re.error, OverflowError, RecursionError) as error:
             raise EntityError(f'{shown(pattern)} is no regular expression: {error}') from error
         return tuple(name for name in self.names if found(name))
 
@@ -158,8 +161,12 @@ class Entities:
         """Refuse a body that would overlap another one or a plane, as a scene file does."""
         scene = self._session.simulation.scene
         others = [other for other in scene.bodies if other.name != body.name]
-        others = [*self._now([other for other in others if not other.fixed]),
-                  *(other for other in others if other.fixed)]
+        moving = self._now([other for other in others if not other.fixed])
+        if body.fixed:
+            # it may stand in the ground and in others that are fixed
+            scene, others = replace(scene, planes=()), moving
+        else:
+            others = [*moving, *(other for other in others if other.fixed)]
         # with all others fixed, only their overlaps with this one are looked for
         overlap = deepest_overlap(replace(scene, bodies=(
             replace(body, fixed=False), *(replace(other, fixed=True) for other in others))))

@@ -104,18 +104,44 @@ def test_names(entities):
         entities.delete('onw')
     assert entities.matching('^o') == ('one', 'one_1')
     assert entities.matching('') == ('one', 'wall', 'two', 'one_1')
-    with pytest.raises(EntityError, match='no regular expression'):
-        entities.matching('(')
+
+
+@pytest.mark.parametrize('pattern', ['(', 'a{99999999999}', '(' * 10_000 + ')' * 10_000])
+def test_what_is_no_regular_expression(entities, pattern):
+    with pytest.raises(EntityError, match='no regular expression') as error:
+        entities.matching(pattern)
+    assert len(str(error.value)) < 300 and '\n' not in str(error.value)
 
 
 @pytest.mark.parametrize('text, uri, reason', [
     ('{cube: {edge: -1}, mass: 1}', '', 'edge'), ('{cube: {edge: 1}}', '', 'mass'),
-    ('cube: [', '', 'cube'), ('<sdf/>', '', 'scene'), ('', 'ten_cubes', '10 bodies'),
+    ('cube: [', '', 'not valid YAML'),
+    ('{cube: {edge: 1}, mass: 2001-13-45}', '', 'mass'),
+    ('{cube: {edge: 1}, mass: 1, mass: 2}', '', "the key 'mass' is given twice"),
+    ('[' * 20_000 + ']' * 20_000, '', 'nested deeper than'), ('{1: 2}', '', 'unknown key'),
+    ('[{a: 1}]', '', 'must be a mapping'), ('\x00', '', 'not valid YAML'),
+    ('<sdf/>', '', 'scene'), ('', 'ten_cubes', '10 bodies'),
     ('', '/nowhere.yaml', 'no such file'), ('', '', 'no shipped scene')])
 def test_bad_descriptions(text, uri, reason):
     with pytest.raises(BadDescription, match=reason) as error:
         described_body(text, uri)
     assert '\n' not in str(error.value)
+
+
+def test_numbers_are_read_as_in_a_scene_file():
+    assert described_body('{cube: {edge: 1e-1}, mass: 1}', '').shape.half_extents == (
+        pytest.approx([0.05] * 3))
+
+
+def test_fixed_body_may_stand_in_the_ground_and_in_fixed_ones(session, entities):
+    post = described_body('{cube: {edge: 0.4}, fixed: true}', '')
+    entities.spawn(post, 'in the ground', position=(0, 0, -10))
+    entities.spawn(post, 'in the wall', position=(0, 5, 0.5))
+    # as in a scene file, not so in what moves, wherever it has moved to
+    session.step(1.0)
+    with pytest.raises(BadPlace, match='overlap one by'):
+        entities.spawn(post, 'post', position=(1, 0, 0))
+    assert entities.spawn(post, 'post', position=(0, 0, 0)) == 'post'
 
 
 def test_no_two_bodies_in_one_place(session, entities):
