@@ -56,6 +56,11 @@ class Control:
         """Whether simulated time stands still."""
         return self._session.paused
 
+    @property
+    def ending(self):
+        """Whether the process was told to end."""
+        return self._stop.requested
+
     def start(self):
         """Let the session's time be due now, and the rest follow."""
         self.pacer.anchor(self._session.time, self._now())
@@ -73,7 +78,7 @@ class Control:
         """Advance by the parameter `step_duration`, if paused and able to; tell whether it did."""
         if self.failure or not self._session.paused:
             return False
-        with self.failing_softly():
+        with self.failing_softly(), self._stop.breakable():
             self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
         self._session.paused = True
         return not self.failure

@@ -45,6 +45,10 @@ class BadDescription(EntityError):
     """The description of a body cannot be read, or does not describe one body."""
 
 
+class BadState(EntityError):
+    """A pose or velocity is none: numbers that are not finite or too large, a zero quaternion."""
+
+
 class BadPlace(EntityError):
     """There is no room for the body where it shall be."""
 
@@ -106,7 +110,7 @@ class Entities:
         """
         Add a body under a name (its own if empty), or one like it if that is taken; return it.
 
-        The changes are as in `place`. Raises `NameTaken`, `BadPlace`, or
+        The changes are as in `place`. Raises `NameTaken`, `BadState`, `BadPlace`, or
         `BadDescription` for what is no name.
         """
         taken = frozenset(self._session.simulation.all_names)
@@ -145,6 +149,17 @@ class Entities:
         self._session.place(name, changed.position, changed.orientation, changed.velocity,
                             changed.angular_velocity)
 
+    def check_reset(self):
+        """
+        Raise `BadPlace` if bodies would overlap after a reset that keeps the bodies there are.
+
+        Each begins where it once began: there may have been room one after the other only.
+        """
+        overlap = deepest_overlap(self._session.simulation.scene)
+        if overlap:
+            raise BadPlace(f'{_overlap_text(overlap)} where both began: delete one of them, '
+                           'or reset what was spawned too')
+
     def _now(self, bodies):
         """Return moving bodies with the motion and the wrench they have now."""
         simulation = self._session.simulation
@@ -171,19 +186,23 @@ class Entities:
         overlap = deepest_overlap(replace(scene, bodies=(
             replace(body, fixed=False), *(replace(other, fixed=True) for other in others))))
         if overlap:
-            raise BadPlace(f'{overlap[0]} would overlap {overlap[1]} by {overlap[2]:.3g} m')
+            raise BadPlace(_overlap_text(overlap))
+
+
+def _overlap_text(overlap):
+    return f'{overlap[0]} would overlap {overlap[1]} by {overlap[2]:.3g} m'
 
 
 def _checked(changes):
-    """Return values of `model.Body` as tuples of numbers of sense; raises `EntityError`."""
+    """Return values of `model.Body` as tuples of numbers of sense; raises `BadState`."""
     try:
         checked = {field: tuple((unit_quaternion(value) if field == 'orientation'
                                  else vector(field, value)).tolist())
                    for field, value in changes.items()}
     except CommandError as error:
-        raise EntityError(str(error)) from error
+        raise BadState(str(error)) from error
     for field, numbers in checked.items():
         if max(map(abs, numbers)) > largest(field):
-            raise EntityError(f'{field} is {list(numbers)}; allowed: at most {largest(field):g} '
-                              'either way')
+            raise BadState(f'{field} is {list(numbers)}; allowed: at most {largest(field):g} '
+                           'either way')
     return checked

@@ -23,7 +23,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from rigid_sim_ros.nodes.entities import (
-    BadDescription, BadPlace, described_body, EntityError, NameTaken, UnknownEntity)
+    BadDescription, BadPlace, BadState, described_body, EntityError, NameTaken, UnknownEntity)
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 
 PACKAGE = 'simulation_interfaces'
@@ -42,7 +42,7 @@ _FEATURES = (
     'STEP_SIMULATION_MULTIPLE')
 
 _SPAWN_ERRORS = {NameTaken: 'NAME_NOT_UNIQUE', BadDescription: 'RESOURCE_PARSE_ERROR',
-                 BadPlace: 'INVALID_POSE'}
+                 BadPlace: 'INVALID_POSE', BadState: 'INVALID_POSE'}
 """The constants of SpawnEntity's response for what can be wrong."""
 
 
@@ -110,6 +110,8 @@ class StandardServices:
         """Advance by `step_duration` so many times, while paused."""
         result = self._messages.Result
         for _ in range(request.steps):
+            if self._node.control.ending:
+                return self._answer(response, result.RESULT_OPERATION_FAILED, 'the node ends')
             if not self._node.step():
                 return self._answer(
                     response, result.RESULT_INCORRECT_STATE,
@@ -121,16 +123,24 @@ class StandardServices:
         """Begin again: state and, if asked for, time; spawned entities stay if not asked for."""
         kind = type(request)
         scope = request.scope or kind.SCOPE_ALL
-        if not scope & (kind.SCOPE_STATE | kind.SCOPE_SPAWNED):
-            return self._unsupported(response, 'a reset of time alone')
+        if scope & kind.SCOPE_TIME and not scope & kind.SCOPE_STATE:
+            return self._unsupported(response, 'a reset of time but not of the state')
         if scope & kind.SCOPE_STATE:
+            keep_bodies = not scope & kind.SCOPE_SPAWNED
+            try:
+                if keep_bodies:
+                    self._node.entities.check_reset()
+            except EntityError as error:
+                return self._answer(
+                    response, self._messages.Result.RESULT_OPERATION_FAILED, error)
             self._node.reset(time_from_zero=bool(scope & kind.SCOPE_TIME),
-                             keep_bodies=not scope & kind.SCOPE_SPAWNED)
+                             keep_bodies=keep_bodies)
             return self._ok(response)
 
         def delete_spawned():
-            for name in self._node.session.added_names:
-                self._node.entities.delete(name)
+            with self._node.control.failing_softly():
+                for name in self._node.session.added_names:
+                    self._node.entities.delete(name)
 
         return self._do(response, self._entity_result, delete_spawned)
 
@@ -146,7 +156,8 @@ class StandardServices:
     def get_entity_state(self, request, response):
         """Tell where a body is and how it moves."""
         def tell():
-            response.state = self._entity_state(request.entity)
+            with self._node.control.failing_softly():
+                response.state = self._entity_state(request.entity)
 
         return self._do(response, self._entity_result, tell)
 
@@ -155,10 +166,15 @@ class StandardServices:
         if not self._is_world(request.state.header.frame_id):
             return self._unsupported(response, f'frame {request.state.header.frame_id!r}')
         pose, twist = request.state.pose, request.state.twist
-        return self._do(response, self._entity_result, lambda: self._node.entities.place(
-            request.entity, position=_vector(pose.position),
-            orientation=_quaternion(pose.orientation), velocity=_vector(twist.linear),
-            angular_velocity=_vector(twist.angular)))
+
+        def place():
+            with self._node.control.failing_softly():
+                self._node.entities.place(
+                    request.entity, position=_vector(pose.position),
+                    orientation=_quaternion(pose.orientation), velocity=_vector(twist.linear),
+                    angular_velocity=_vector(twist.angular))
+
+        return self._do(response, self._entity_result, place)
 
     def spawn_entity(self, request, response):
         """Add a body, described as in a scene file."""
@@ -176,17 +192,21 @@ class StandardServices:
 
         def spawn():
             body = described_body(resource.resource_string, resource.uri)
-            response.entity_name = self._node.entities.spawn(
-                body, request.name, request.allow_renaming, position=_vector(pose.position),
-                orientation=_quaternion(pose.orientation))
+            with self._node.control.failing_softly():
+                response.entity_name = self._node.entities.spawn(
+                    body, request.name, request.allow_renaming, position=_vector(pose.position),
+                    orientation=_quaternion(pose.orientation))
 
         return self._do(
             response, lambda error: self._spawn_result(response, error), spawn)
 
     def delete_entity(self, request, response):
         """Take a body out."""
-        return self._do(response, self._entity_result,
-                        lambda: self._node.entities.delete(request.entity))
+        def delete():
+            with self._node.control.failing_softly():
+                self._node.entities.delete(request.entity)
+
+        return self._do(response, self._entity_result, delete)
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -207,8 +227,9 @@ class StandardServices:
 
         def tell():
             names = self._node.entities.matching(filters.filter)
-            for field, value in fields(list(names)).items():
-                setattr(response, field, value)
+            with self._node.control.failing_softly():
+                for field, value in fields(list(names)).items():
+                    setattr(response, field, value)
 
         return self._do(response, self._entity_result, tell)
 
@@ -230,8 +251,7 @@ class StandardServices:
         node = self._node
         try:
             if not node.failure:
-                with node.control.failing_softly():
-                    act()
+                act()
         except EntityError as error:
             return self._answer(response, result_of(error), error)
         if node.failure:

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The services of simulation_interfaces, called by a real client; only where it is installed."""
+"""
+The services of simulation_interfaces, called by a real client; only where it is installed.
+
+test_standard_services.py calls the same methods everywhere.
+"""
 
 import numpy as np
 from numpy.testing import assert_allclose
