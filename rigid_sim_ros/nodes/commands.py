@@ -55,6 +55,8 @@ FARTHEST_AHEAD = 86400 * NANOSECONDS
 MOST_PENDING = 100_000
 """Commands that can wait for their time."""
 
+NEVER = 2 ** 63 - 1  # [ns], a time that does not come
+
 WORLD_AXES, BODY_AXES = 'world', 'body'
 """The axes of the vectors in a command."""
 
@@ -122,7 +124,8 @@ class Commands:
         self._pending = []
         self._count = 0
         self._rows = {}
-        self._holder = {quantity: np.zeros(0, dtype=np.int64) for quantity in _HELD}
+        # [ns], when the scene's wrench takes the place of what is held on each body
+        self._release_at = {quantity: np.zeros(0, dtype=np.int64) for quantity in _HELD}
         self.change_bodies()
 
     def change_bodies(self):
@@ -135,21 +138,20 @@ class Commands:
         self._scene_wrench = {
             quantity: np.array([getattr(body, quantity) for body in moving]).reshape(-1, 3)
             for quantity in _HELD}
-        # the number of the command that set what is held, so that a later one is not released
-        for quantity, numbers in self._holder.items():
-            self._holder[quantity] = np.array(
-                [numbers[before[name]] if name in before else 0 for name in names],
-                dtype=np.int64)
+        for quantity, times in self._release_at.items():
+            self._release_at[quantity] = np.array([
+                times[before[name]] if name in before else NEVER for name in names], dtype=np.int64)
+        self._find_next_release()
 
     @property
     def pending(self):
-        """How many commands and releases wait for their time."""
+        """How many commands wait for their time."""
         return len(self._pending)
 
     @property
     def next_time(self):
-        """Return the simulated time [ns] of the next that is pending, infinite if none is."""
-        return self._pending[0][0] if self._pending else float('inf')
+        """Return the simulated time [ns] of the next that is to be done, or `NEVER`."""
+        return min(self._pending[0][0] if self._pending else NEVER, self._next_release)
 
     def carry_out(self, command, now):
         """Carry out a command at `now` [ns], the simulation's time; or raise `Refused`."""
@@ -181,7 +183,8 @@ class Commands:
             self._apply(command, time)
             then(time)
 
-        self._push(time, rank, action)
+        self._count += 1
+        heappush(self._pending, (time, rank, self._count, action))
 
     def carry_out_due(self, now):
         """
@@ -190,15 +193,13 @@ class Commands:
         A command to a body that was removed while it waited is given to `on_refused`.
         """
         while self.next_time <= now:
-            action = heappop(self._pending)[-1]
+            if not self._pending or self._next_release <= self._pending[0][0]:
+                self._release()
+                continue
             try:
-                action()
+                heappop(self._pending)[-1]()
             except Refused as reason:
                 self.on_refused(reason)
-
-    def _push(self, time, rank, action):
-        self._count += 1
-        heappush(self._pending, (time, rank, self._count, action))
 
     def _check(self, command):
         if not command.names:
@@ -263,21 +264,28 @@ class Commands:
         held = {name: given[name] for name in _HELD if name in given}
         if held:
             self._hold(rows, held)
-            self._count += 1
-            for quantity in held:
-                self._holder[quantity][rows] = self._count
-            if self.timeout > 0:
-                time = now + round(self.timeout * NANOSECONDS)
-                number = self._count
-                self._push(time, -1, lambda: self._release(command.names, tuple(held), number))
+            if self.timeout > 0 or self._next_release < NEVER:
+                self._set_release(rows, held, now)
 
-    def _release(self, names, quantities, number):
-        """Hold on bodies again what the scene holds, where command `number` is still held."""
-        rows = np.array([self._rows[name] for name in names if name in self._rows], dtype=int)
+    def _set_release(self, rows, quantities, now):
+        """Let what is held from `now` [ns] on end in time; the times set before are void."""
+        time = now + round(self.timeout * NANOSECONDS) if self.timeout > 0 else NEVER
         for quantity in quantities:
-            left = rows[self._holder[quantity][rows] == number]
-            if len(left):
-                self._hold(left, {quantity: self._scene_wrench[quantity][left]})
+            self._release_at[quantity][rows] = time
+        self._find_next_release()
+
+    def _find_next_release(self):
+        self._next_release = min(
+            int(times.min(initial=NEVER)) for times in self._release_at.values())
+
+    def _release(self):
+        """Hold again what the scene holds, where the next release is."""
+        for quantity, times in self._release_at.items():
+            rows = np.flatnonzero(times == self._next_release)
+            times[rows] = NEVER
+            if len(rows):
+                self._hold(rows, {quantity: self._scene_wrench[quantity][rows]})
+        self._find_next_release()
 
     def _hold(self, rows, held):
         """Replace the quantities given, force and torque or one of them, on the rows."""

@@ -19,7 +19,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.nodes.commands import (
-    BODY_AXES, body_command, Command, Commands, FARTHEST_AHEAD, LARGEST_VALUE, Refused)
+    BODY_AXES, body_command, Command, Commands, FARTHEST_AHEAD, LARGEST_VALUE, NEVER,
+    Refused)
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.scene import load_scene
 
@@ -108,6 +109,46 @@ def test_command_that_came_later_is_not_released_with_an_earlier_one(simulation,
     assert_array_equal(simulation.force[0], -VECTOR)
     commands.carry_out_due(NANOSECONDS)
     assert_array_equal(simulation.force[0], [0, 0, 3])
+
+
+def test_command_that_holds_for_ever_is_not_released_with_an_earlier_one(simulation, commands):
+    commands.timeout = 0.5
+    commands.carry_out(body_command('one', force=VECTOR, torque=VECTOR), 0)
+    commands.timeout = 0.0
+    commands.carry_out(body_command('one', force=-VECTOR), NANOSECONDS // 4)
+    commands.carry_out_due(NANOSECONDS)
+    assert_array_equal(simulation.force[0], -VECTOR)
+    assert_array_equal(simulation.torque[0], [0, 0, 0])
+    assert commands.next_time == NEVER
+
+
+def test_one_release_is_kept_for_a_body_however_often_it_is_commanded(commands):
+    commands.timeout = 200.0
+    for number in range(2000):
+        commands.carry_out(body_command('one', force=VECTOR), number)
+    assert commands.pending == 0
+    # only the last of them ends by itself: nothing is to be done until then
+    assert commands.next_time == 1999 + 200 * NANOSECONDS
+
+
+def test_releases_take_no_room_of_commands_that_wait(commands, monkeypatch):
+    monkeypatch.setattr('rigid_sim_ros.nodes.commands.MOST_PENDING', 2)
+    commands.timeout = 1.0
+    for number in range(4):
+        commands.schedule(body_command('one', force=VECTOR), number, 0, number)
+        commands.carry_out_due(number)
+    for time in (10, 11):
+        commands.schedule(body_command('one', force=VECTOR), time, 0, 4)
+    with pytest.raises(Refused, match='too many pending'):
+        commands.schedule(body_command('one', force=VECTOR), 12, 0, 4)
+
+
+def test_release_comes_before_a_command_of_the_same_time(simulation, commands):
+    commands.timeout = 1.0
+    commands.carry_out(body_command('one', force=VECTOR), 0)
+    commands.schedule(body_command('one', force=-VECTOR), NANOSECONDS, 0, 0)
+    commands.carry_out_due(NANOSECONDS)
+    assert_array_equal(simulation.force[0], -VECTOR)
 
 
 def test_order_of_one_time_is_rank_then_arrival(simulation, commands):
