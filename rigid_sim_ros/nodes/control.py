@@ -47,7 +47,7 @@ class Control:
         session.paused = parameters.start_paused
         self.pacer = Pacer(parameters.real_time_factor, 1 / parameters.publish_rate)
         self._take_parameters()
-        parameters.when_changed('publish_rate', self._change_pace)
+        parameters.when_changed('publish_rate', self._change_rate)
         parameters.when_changed('real_time_factor', self._change_pace)
         parameters.when_changed('pause_on_collision', self._take_parameters)
 
@@ -133,9 +133,12 @@ class Control:
         self.failure = f'the simulation cannot go on, only be reset: {error}'
         self._logger.error(self.failure)
 
+    def _change_rate(self):
+        self._session.set_publish_rate(self._parameters.publish_rate)
+        self._change_pace()
+
     def _change_pace(self):
         parameters = self._parameters
-        self._session.set_publish_rate(parameters.publish_rate)
         self.pacer.change(parameters.real_time_factor, 1 / parameters.publish_rate,
                           self._session.time, self._now())
 
