@@ -139,8 +139,8 @@ class Commands:
             quantity: np.array([getattr(body, quantity) for body in moving]).reshape(-1, 3)
             for quantity in _HELD}
         for quantity, times in self._release_at.items():
-            self._release_at[quantity] = np.array([
-                times[before[name]] if name in before else NEVER for name in names], dtype=np.int64)
+            self._release_at[quantity] = np.array(
+                [times[before[n]] if n in before else NEVER for n in names], dtype=np.int64)
         self._find_next_release()
 
     @property

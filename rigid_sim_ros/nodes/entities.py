@@ -111,7 +111,7 @@ class Entities:
         Add a body under a name (its own if empty), or one like it if that is taken; return it.
 
         The changes are as in `place`. Raises `NameTaken`, `BadState`, `BadPlace`, or
-        `BadDescription` for what is no name.
+        `BadDescription` for what is no name, or a shape that the method does not know.
         """
         taken = frozenset(self._session.simulation.all_names)
         name = name or body.name
@@ -127,7 +127,10 @@ class Entities:
         except values.NotAllowed as error:
             raise BadDescription(f'name is {shown(name)}; must be {error}') from error
         self._check_place(body)
-        self._session.add(body)
+        try:
+            self._session.add(body)
+        except CommandError as error:
+            raise BadDescription(str(error)) from error
         return name
 
     def delete(self, name):

@@ -71,7 +71,7 @@ class SimulationNode:
         for name in parameters.unknown:
             logger.warning(unknown_parameter_text(name))
         scene = load_scene(parameters.scene)
-        simulation = Simulation(scene, parameters.method, parameters.max_step)
+        simulation = _simulation(scene, parameters)
         self._now = now
         self._stop = stop
         self._source = Source(simulation, parameters.world_frame, dump_scene(scene))
@@ -129,13 +129,12 @@ class SimulationNode:
 
     def close(self):
         """Finish the recording, say so, and leave the ROS graph."""
-        if self.recording.active:
+        if self.recording.begun:
             went_well, text = self.recording.stop()
             if went_well:
                 self.ros.get_logger().info(text)
             else:
                 self.ros.get_logger().error(text)
-        self.recording.stop()
         self.ros.destroy_node()
 
     # -- what services do ----------------------------------------------------------------------
@@ -246,3 +245,11 @@ class SimulationNode:
             self._display.draw(self.session.time)
         self._display.catch_up(self.session.time)
         self._taken_shown = taken
+
+
+def _simulation(scene, parameters):
+    try:
+        return Simulation(scene, parameters.method, parameters.max_step)
+    except ValueError as error:
+        raise ParameterError(f'scene {parameters.scene!r} cannot be simulated so: {error}'
+                             ) from error

@@ -66,6 +66,11 @@ class Recording:
         self._reported = ''
 
     @property
+    def begun(self):
+        """Whether a recording was begun and not yet stopped, even if it has failed."""
+        return self._recorder is not None
+
+    @property
     def active(self):
         """Whether messages are recorded."""
         return self._recorder is not None and not self._recorder.error

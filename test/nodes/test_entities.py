@@ -128,6 +128,18 @@ def test_bad_descriptions(text, uri, reason):
     assert '\n' not in str(error.value)
 
 
+def test_body_that_the_method_does_not_know_is_refused():
+    scene = {**SCENE, 'bodies': SCENE['bodies'][:1]}
+    simulation = Simulation(load_scene(scene), 'report', 0.001)
+    session = Session(simulation, 100.0, lambda time, collisions: None)
+    with pytest.raises(BadDescription, match="'report'.*'sphere'"):
+        Entities(session).spawn(described_body('{sphere: {radius: 1}, mass: 1}', ''), 'ball',
+                                position=(0, 0, 3))
+    assert (simulation.all_names, session.added_names) == (('one', 'ground'), ())
+    session.step(1.0)
+    assert_allclose(simulation.position, [[1, 0, 0]], atol=1e-12)
+
+
 def test_numbers_are_read_as_in_a_scene_file():
     assert described_body('{cube: {edge: 1e-1}, mass: 1}', '').shape.half_extents == (
         pytest.approx([0.05] * 3))

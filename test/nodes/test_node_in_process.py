@@ -183,6 +183,21 @@ def test_both_publish_the_clock_if_told_to():
         assert len(nodes[0].ros.get_publishers_info_by_topic('/clock')) == 2
 
 
+def test_recording_that_failed_just_before_the_end_is_told(tmp_path, capfd):
+    with hosted('', record=True, record_path=str(tmp_path / 'bag')) as ([node], _):
+        node.recording._recorder._fail('no room left')
+    assert 'no room left' in capfd.readouterr().err
+
+
+def test_scene_that_the_method_does_not_know_is_refused(tmp_path):
+    path = tmp_path / 'ball.yaml'
+    path.write_text('bodies: [{name: ball, sphere: {radius: 1}, mass: 1}]')
+    with pytest.raises(ParameterError, match="'report'.*'sphere'") as error:
+        with hosted('', scene=str(path), method='report'):
+            pass
+    assert '\n' not in str(error.value)
+
+
 def test_transforms_need_tf2_msgs():
     if find_spec('tf2_msgs'):
         pytest.skip('tf2_msgs is installed')
