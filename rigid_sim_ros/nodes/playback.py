@@ -19,9 +19,14 @@ Nothing here knows ROS, and wall time comes in as an argument. Bag time runs on 
 time was reset: a message that is stamped earlier than the one before follows at once.
 """
 
+from collections import deque
+
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.recording import Bag, RecordingError
 from rigid_sim_ros.recording.collecting import COMMAND_KINDS
+
+MOST_AHEAD = 64
+"""Messages read before the one that is due next is."""
 
 
 class Playback:
@@ -53,6 +58,7 @@ class Playback:
         self.damage = ()
         """What could not be read so far."""
         self._anchor_wall, self._anchor_ns = float('inf'), 0
+        self._ahead = deque()
         self._timed = self._from_start()
         self._go_on()
         if self.message is None:
@@ -79,8 +85,23 @@ class Playback:
             self.anchor(due)
         return taken
 
+    def read_ahead(self):
+        """
+        Read what is due together with `message`, and one more.
+
+        To be called while nothing is due: taking a message can mean reading a chunk, two
+        milliseconds for a megabyte, and those that are due with it would wait for that.
+        """
+        ahead = self._ahead
+        while len(ahead) < MOST_AHEAD and (not ahead or ahead[-1][0] == self._elapsed):
+            following = next(self._timed, None)
+            if following is None:
+                return
+            ahead.append(following)
+
     def _go_on(self):
-        self._elapsed, self.message = next(self._timed, (0, None))
+        self._elapsed, self.message = (
+            self._ahead.popleft() if self._ahead else next(self._timed, (0, None)))
 
     def _survey(self):
         bag = Bag(self._path)

@@ -159,6 +159,7 @@ class Player:
             self._publish()
         if self._playback.message is None:
             self._stop.requested = True
+        self._playback.read_ahead()
         return self._playback.due
 
     def close(self):
@@ -175,11 +176,13 @@ class Player:
         self.ros.destroy_node()
 
     def _publish(self):
-        message = self._playback.take()
+        message = self._playback.message
         if self._clock is not None and message.time_ns != self._time_ns:
             self._clock.publish(encode_clock(message.time_ns))
         self._time_ns = message.time_ns
         self._publishers[message.topic].publish(bytes(message.data))
+        # only now: it may have to read the next from the disk
+        self._playback.take()
 
     def _pause(self, request, response):
         if self._paused and not request.data:

@@ -18,8 +18,8 @@ from dataclasses import replace
 
 import pytest
 from rigid_sim_ros import messages, topics
-from rigid_sim_ros.nodes.playback import Playback
-from rigid_sim_ros.recording import Recorder, RecordingError
+from rigid_sim_ros.nodes.playback import MOST_AHEAD, Playback
+from rigid_sim_ros.recording import Bag, Recorder, RecordingError
 
 TEXT, SCENE, COMMAND = '/rigid_sim/collision_text', '/rigid_sim/scene', '/rigid_sim/cmd_vel'
 
@@ -77,6 +77,44 @@ def test_a_loop_begins_again_at_the_end(bag):
     assert played(playback, 7) == [
         (0.0, 'at 1.0'), (1.0, 'at 2.0'), (2.0, 'at 3.0'), (2.0, 'at 0.5'), (2.5, 'at 1.0'),
         (2.5, 'at 1.0'), (3.5, 'at 2.0')]
+
+
+def test_what_is_due_together_is_read_before_it_is_due(bag, monkeypatch):
+    read, of_bag = [], Bag.messages
+
+    def counted(self):
+        for message in of_bag(self):
+            read.append(message)
+            yield message
+
+    monkeypatch.setattr(Bag, 'messages', counted)
+    playback = Playback(bag)
+    playback.anchor(0.0)
+    found = []
+    while playback.message is not None:
+        playback.read_ahead()
+        before, due = len(read), playback.due
+        while playback.message is not None and playback.due == due:
+            assert len(read) == before, 'read while it was due'
+            found.append((due, messages.decode_string(playback.take().data)))
+    monkeypatch.undo()
+    again = Playback(bag)
+    again.anchor(0.0)
+    assert found == played(again)
+
+
+def test_no_more_is_read_ahead_than_is_kept(tmp_path):
+    rows = [replace(row, name=topics.resolve(row.name)) for row in topics.PUBLISHED]
+    with Recorder(tmp_path / 'bag', rows) as recorder:
+        for number in range(3 * MOST_AHEAD):
+            recorder.write(TEXT, 0, messages.encode_string(str(number)))
+    playback = Playback(tmp_path / 'bag')
+    playback.anchor(0.0)
+    playback.read_ahead()
+    playback.read_ahead()
+    assert len(playback._ahead) == MOST_AHEAD
+    assert [text for _, text in played(playback, 1000)] == [
+        str(number) for number in range(3 * MOST_AHEAD)]
 
 
 def test_commands_are_played_only_if_asked_for(bag):
