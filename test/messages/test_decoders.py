@@ -141,7 +141,8 @@ def test_collision_lines_are_json_with_names():
 
 
 def test_collision_kinds_are_named_as_in_the_engine():
-    assert messages.collisions.KIND_NAMES == engine_events.KIND_NAMES
+    kinds = engine_events.IMPACT, engine_events.BEGIN, engine_events.END
+    assert [messages.collisions.KIND_NAMES[kind] for kind in kinds] == ['impact', 'begin', 'end']
 
 
 @EVERY_DECODER
