@@ -55,6 +55,8 @@ class Near:
         """See the class."""
         self.island = island
         self.contacts = contacts
+        self._across = None, None
+        """The last `Motion` that it was asked about, and the velocities across."""
         self.position, self.orientation = motion.position, motion.orientation
         self.body_pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist()))
         """(k,): the bodies of each contact, as plain numbers."""
@@ -88,7 +90,9 @@ class Near:
 
     def across(self, motion):
         """Return the velocity [m/s] of b minus that of a at the contacts, (3, k), world axes."""
-        return self.rows.across(motion.linear, motion.angular)
+        if self._across[0] is not motion:
+            self._across = motion, self.rows.across(motion.linear, motion.angular)
+        return self._across[1]
 
     def approach(self, motion):
         """Return how fast [m/s] contacts approach, (k,)."""

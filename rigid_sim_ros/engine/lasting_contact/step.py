@@ -133,12 +133,18 @@ def second_half(motion, near, which, half=SECOND):
 
 
 def push_out(motion, near):
-    """Return the motion with bodies moved so that no contact overlaps, without friction."""
+    """
+    Return the motion with bodies moved so that no contact overlaps, without friction.
+
+    And how: by (3, n) [m] and turned by (3, n) [rad].
+    """
     rows, count = near.rows, near.count
+    linear, angular = np.zeros((2, *motion.linear.shape))
     zeros = np.zeros(count)
     free = np.concatenate((near.contacts.separation, zeros, zeros))
     problem = ContactProblem(rows.response(), free, zeros, zeros, np.zeros((2, count)))
-    return motion.moved(rows.touched, *rows.change(solve(problem).force))
+    linear[:, rows.touched], angular[:, rows.touched] = rows.change(solve(problem).force)
+    return motion.moved(np.arange(linear.shape[1]), linear, angular), linear, angular
 
 
 def _turning(near, motion, step):

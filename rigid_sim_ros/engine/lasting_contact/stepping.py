@@ -74,7 +74,7 @@ def _advance(island, free, scales, limits, motion, near, time, step):
         if left <= cut.SHORTEST * step:
             trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
-    end, end_near = _separated(island, end, end_near, overlap, margin)
+    end, end_near = _separated(end, end_near, scales, margin)
     closed = end_near.closed(limits.touch_gap)
     if closed.size:
         # what arrives fast just now is an impact, the first thing in the next step
@@ -85,12 +85,16 @@ def _advance(island, free, scales, limits, motion, near, time, step):
     return motion, near
 
 
-def _separated(island, motion, near, overlap, margin):
-    """Return (motion, contacts near it) with overlaps pushed out, which is hardly ever needed."""
-    if not near.closed(-overlap).size:
+def _separated(motion, near, scales, margin):
+    """Return (motion, contacts near it) with overlaps pushed out."""
+    deepest = -float(near.contacts.separation.min(initial=0.0))
+    if deepest <= units.OVERLAP * scales.length:
         return motion, near
-    motion = push_out(motion, near)
-    return motion, island.near(motion, margin)
+    motion, linear, angular = push_out(motion, near)
+    # contacts of bodies that hardly move need not be found again
+    if deepest <= units.IMPACT_GAP * scales.length:
+        return motion, near.shifted(motion, linear, angular)
+    return motion, near.island.near(motion, margin)
 
 
 def parts_of(island, free, motion, duration):
