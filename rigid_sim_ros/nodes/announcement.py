@@ -14,8 +14,10 @@
 
 """What users are told: usage, and at the start where things are and what can be tried."""
 
+import json
 import os
 from pathlib import Path
+import re
 import shlex
 import shutil
 import sys
@@ -24,6 +26,7 @@ from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import PARAMETERS
 from rigid_sim_ros.topics import COMMANDS, SERVICES
+import yaml
 
 EXECUTABLE = 'rigid_sim_node'
 
@@ -92,15 +95,22 @@ def invitation(node, simulation):
 
 def examples(command, resolve, names):
     """Return three shell commands: push, let go, throw; `resolve` gives a topic's full name."""
-    first, last = names[0], names[-1]
+    first, last = (f'frame_id: {_quoted(name)}' for name in (names[0], names[-1]))
     publish = f'{shlex.quote(command)} topic pub --once'
     push = f"{publish} {resolve('~/cmd_force')} geometry_msgs/msg/Vector3Stamped"
     # a force holds, so the second ends the first: nobody is left with a body that flies for ever
+    thrown = f'{{header: {{{first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'
     return (
-        f"{push} '{{header: {{frame_id: {last}}}, vector: {{x: 8.0}}}}'",
-        f"{push} '{{header: {{frame_id: {last}}}}}'",
-        f"{publish} {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped "
-        f"'{{header: {{frame_id: {first}}}, twist: {{linear: {{z: 3.0}}, angular: {{x: 5.0}}}}}}'")
+        f"{push} {shlex.quote(f'{{header: {{{last}}}, vector: {{x: 8.0}}}}')}",
+        f"{push} {shlex.quote(f'{{header: {{{last}}}}}')}",
+        f"{publish} {resolve('~/cmd_vel')} geometry_msgs/msg/TwistStamped {shlex.quote(thrown)}")
+
+
+def _quoted(name):
+    """Return a name as YAML: as it is if it is a word, and not one like yes or null."""
+    is_word = re.fullmatch('[A-Za-z_][A-Za-z_0-9]*', name)
+    return name if is_word and yaml.safe_load(name) == name else json.dumps(
+        name, ensure_ascii=False)
 
 
 def ros2_command():

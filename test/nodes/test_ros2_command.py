@@ -29,7 +29,7 @@ import pytest
 pytest.importorskip('rclpy')
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue  # noqa: E402, I100
-from geometry_msgs.msg import TwistStamped  # noqa: E402
+from geometry_msgs.msg import TwistStamped, Vector3Stamped  # noqa: E402
 from node_harness import Client, NodeProcess  # noqa: E402
 from rigid_sim_ros.nodes import announcement  # noqa: E402
 from rigid_sim_ros.nodes.ros2_command import run  # noqa: E402
@@ -187,6 +187,17 @@ def test_node_tells_to_type_what_is_there(tmp_path, monkeypatch):
     assert announcement.ros2_command() == str(folder / 'rigid_sim_ros2')[1:]
     monkeypatch.setattr('shutil.which', lambda name: f'/opt/ros/jazzy/bin/{name}')
     assert announcement.ros2_command() == 'ros2'
+
+
+@pytest.mark.parametrize('name', [
+    'cube_1', "Bob's cube", 'yes', 'y', 'null', '1e3', '{a: b}', 'a "b" \\', 'Würfel', '#1',
+    '\U0001f3b2', '$HOME `date`'])
+def test_commands_the_node_offers_name_the_body_whatever_it_is_called(name):
+    for line in announcement.examples('ros2', str, [name]):
+        program, topic, pub, once, where, what, text = shlex.split(line)
+        assert from_yaml(TwistStamped if 'vel' in where else Vector3Stamped,
+                         text).header.frame_id == name
+    assert '"' not in announcement.examples('ros2', str, ['cube_1'])[0]
 
 
 def test_commands_the_node_offers_push_let_go_and_throw(process, command, patient):
