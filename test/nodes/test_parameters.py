@@ -35,12 +35,27 @@ def test_file_has_every_default():
         assert type(value) is type(ROWS[name].default), name
 
 
-def test_file_says_what_is_allowed():
-    words = ' '.join(line.strip().lstrip('# ') for line in TEXT.splitlines())
-    for row in PARAMETERS:
-        comment = words.split(f' {row.name}: ')[0]
-        if row.choices or row.smallest is not None:
-            assert f'allowed: {row.allowed}' in comment, row.name
+def comments():
+    """Return the words above each parameter in the file, by its name."""
+    found, words = {}, []
+    body = TEXT[TEXT.index('ros__parameters:'):].splitlines()[1:]
+    for line in map(str.strip, body):
+        name = line.lstrip('# ').split(': ')[0]
+        if name in ROWS:
+            found[name], words = ' '.join(words), []
+        elif line:
+            assert line.startswith('# '), line
+            words.append(line[2:])
+    assert not words
+    return found
+
+
+def test_file_says_of_each_what_the_node_says():
+    def words(row):
+        limits = f'; allowed: {row.allowed}' if row.choices or row.smallest is not None else ''
+        return row.description + limits + (' (start)' if row.read_only else '')
+
+    assert comments() == {row.name: words(row) for row in PARAMETERS}
 
 
 @pytest.mark.parametrize('name, value', [
