@@ -16,6 +16,7 @@
 
 import argparse
 from collections import Counter
+import os
 import sys
 
 import numpy as np
@@ -39,7 +40,8 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog='rigid_sim_info', description='Tell what is in a recording: topics, bodies, '
         'collisions, and how much energy and momentum changed.')
-    parser.add_argument('bag', help='folder of the bag, or one MCAP file of it')
+    parser.add_argument('bag', type=os.path.expanduser,
+                        help='folder of the bag, or one MCAP file of it')
     parser.add_argument('--all', action='store_true', help='list every collision')
     options = parser.parse_args(arguments)
     try:

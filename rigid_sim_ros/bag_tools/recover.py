@@ -15,6 +15,7 @@
 """`rigid_sim_recover`: finish a bag whose recorder was killed."""
 
 import argparse
+import os
 import sys
 
 from rigid_sim_ros.recording import RecordingError, recover
@@ -26,7 +27,7 @@ def main(arguments=None):
         prog='rigid_sim_recover',
         description='Finish a bag whose recorder was killed, or whose files were damaged: '
                     'everything readable is kept, and a damaged file stays beside the new one.')
-    parser.add_argument('bag', help='folder of the bag')
+    parser.add_argument('bag', type=os.path.expanduser, help='folder of the bag')
     options = parser.parse_args(arguments)
     try:
         for line in recover(options.bag):

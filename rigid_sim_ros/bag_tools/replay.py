@@ -55,12 +55,12 @@ def _parser():
         description='Simulate a recording again from its scene and commands, as fast as '
                     'possible, and compare every pose, velocity and collision bit for bit. '
                     'Exit code 0: identical; 1: different; 2: it cannot be simulated again.')
-    parser.add_argument('bag', help='folder of the bag')
+    parser.add_argument('bag', type=os.path.expanduser, help='folder of the bag')
     parser.add_argument(
         '--with', dest='changes', default='', metavar='NAME=VALUE,...',
         help='simulate with another method or max_step [s], and tell how far it gets from the '
              'recording')
-    parser.add_argument('--plot', metavar='FILE',
+    parser.add_argument('--plot', type=os.path.expanduser, metavar='FILE',
                         help='where to draw the deviations of --with (default: beside the bag)')
     return parser
 

@@ -178,7 +178,8 @@ class Recording:
                     on_full=self._warn_full)
             except RecordingError:
                 # what is there stays; another name will do, unless it was given
-                if path == parameters.record_path or not os.path.lexists(path):
+                if path == parameters.record_path or not os.path.lexists(
+                        os.path.expanduser(path)):
                     raise
 
     def _next_path(self):

@@ -90,7 +90,7 @@ class Recorder:
     Parameters
     ----------
     uri : str
-        The folder to make; its last part names the files. It must not be there yet.
+        The folder to make; its last part names the files. It must not be there yet. `~` is home.
     topics : sequence
         Rows with a full name, a type_name and a quality (depth, reliability, durability).
     compression : str
@@ -123,7 +123,7 @@ class Recorder:
         if compression not in COMPRESSIONS:
             raise RecordingError(f'compression is {compression!r}; allowed: '
                                  f'{", ".join(COMPRESSIONS)}')
-        self.path = os.path.abspath(uri)
+        self.path = os.path.abspath(os.path.expanduser(uri))
         topics = tuple(bag_topic(row) for row in topics)
         self._channels = {topic.name: number for number, topic in enumerate(topics, 1)}
         self._chunk_seconds = chunk_seconds

@@ -14,6 +14,7 @@
 
 """Where a scene comes from: a file, a shipped scene by its name, or text."""
 
+import os
 from pathlib import Path
 
 from rigid_sim_ros.scene.errors import listed, nearest, SceneError
@@ -31,14 +32,15 @@ def scene_text(source):
     """
     Return (text, label) of a scene given as path, name or text; the label starts messages.
 
-    Text is what has a line break in it; a path has a / or ends in .yaml or .yml (or is a Path).
+    Text is what has a line break in it; a path has a / or ends in .yaml or .yml (or is a Path);
+    ~ is the user's home.
     """
     if not isinstance(source, (str, Path)):
         raise TypeError(f'a scene is a path, a name, text or a dict, not {type(source).__name__}')
     if isinstance(source, str) and '\n' in source:
         return source, 'scene'
     if isinstance(source, Path) or '/' in source or source.endswith((SUFFIX, '.yml')):
-        return _file_text(Path(source)), str(source)
+        return _file_text(Path(os.path.expanduser(source))), str(source)
     path = _scenes_folder() / (source + SUFFIX)
     names = shipped_scenes()
     if source not in names:

@@ -122,6 +122,12 @@ def test_a_run_with_commands_and_resets_is_identical(eventful, capsys):
     assert f'{2 * (30 + 3)} messages up to 0.050000000 s' in output
 
 
+@pytest.mark.parametrize('tool', [info, recover, replay])
+def test_a_bag_may_be_told_from_home(eventful, monkeypatch, capsys, tool):
+    monkeypatch.setenv('HOME', str(eventful.parent))
+    assert tool.main([f'~/{eventful.name}']) == 0
+
+
 def test_a_plot_that_cannot_be_written_takes_nothing_else_away(eventful, tmp_path, capsys):
     """A folder that is not there is told before it simulates; what else, at the end."""
     arguments = [str(eventful), '--with', 'max_step=0.001', '--plot']

@@ -58,6 +58,12 @@ def test_metadata_is_there_from_the_start_and_complete_at_the_end(tmp_path, run)
         row['topic_metadata'] for row in first['topics_with_message_count']]
 
 
+def test_a_path_may_begin_at_home(tmp_path, run, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    assert run.recorder('~/bags/one').path == str(tmp_path / 'bags' / 'one')
+    assert (tmp_path / 'bags' / 'one' / 'metadata.yaml').is_file()
+
+
 def test_a_recording_never_replaces_another(tmp_path, run):
     run.recorder(tmp_path / 'bag').close()
     before = (tmp_path / 'bag' / 'bag_0.mcap').read_bytes()

@@ -231,6 +231,13 @@ def test_other_types_are_a_mistake_of_the_caller():
         load_scene([])
 
 
+def test_path_may_begin_at_home(tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    assert refusal('~/here.yaml') == f'{tmp_path}/here.yaml: no such file'
+    (tmp_path / 'here.yaml').write_text('bodies: []')
+    assert load_scene('~/here.yaml').bodies == ()
+
+
 def test_files(tmp_path):
     path = tmp_path / 'scene.yaml'
     assert refusal(path) == f'{path}: no such file'
