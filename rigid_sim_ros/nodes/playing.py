@@ -20,7 +20,7 @@ were recorded. Simulated time is on `/clock` if it was recorded, or if asked for
 """
 
 import argparse
-from math import inf
+import os
 import sys
 import time
 
@@ -31,10 +31,12 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from rigid_sim_ros.messages import encode_clock
+from rigid_sim_ros.nodes.arguments import not_negative, positive
 from rigid_sim_ros.nodes.executors import AUTO, make_executor
 from rigid_sim_ros.nodes.interfaces import interface, quality_of_service
+from rigid_sim_ros.nodes.lateness import Lateness
 from rigid_sim_ros.nodes.playback import Playback
-from rigid_sim_ros.nodes.running import drive, USER_ERROR
+from rigid_sim_ros.nodes.running import drive, readable, USER_ERROR
 from rigid_sim_ros.recording import RecordingError
 from rigid_sim_ros.recording.bag_metadata import quality_profiles
 from rigid_sim_ros.topics import PUBLISHED, Quality
@@ -60,13 +62,16 @@ _LARGEST_DEPTH = 1000
 
 def run(arguments, stop):
     """Play with command line arguments (argv[0] included); return the exit code."""
-    options = _parser().parse_args(remove_ros_args(arguments)[1:])
+    try:
+        own = remove_ros_args(arguments)[1:]
+    except RuntimeError as error:
+        return _fail(readable(error))
+    options = _parser().parse_args(own)
     try:
         playback = Playback(options.bag, options.topics, options.rate, options.start,
                             options.loop)
     except RecordingError as error:
-        print(f'{EXECUTABLE}: {error}', file=sys.stderr)
-        return USER_ERROR
+        return _fail(error)
     rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     try:
         player = Player(playback, options.clock, options.paused, stop)
@@ -75,6 +80,8 @@ def run(arguments, stop):
         player.start()
         drive([player], executor, stop)
         player.close()
+    except UnknownType as error:
+        return _fail(error)
     finally:
         rclpy.try_shutdown()
     return 0
@@ -85,10 +92,11 @@ def _parser():
         prog=EXECUTABLE, description='Publish a recording again. Services ~/pause '
         '(std_srvs/SetBool) and ~/step (std_srvs/Trigger) control it. ROS arguments follow '
         '--ros-args.')
-    parser.add_argument('bag', help='folder of the bag, or one MCAP file of it')
-    parser.add_argument('--rate', type=_positive, default=1.0,
+    parser.add_argument('bag', type=os.path.expanduser,
+                        help='folder of the bag, or one MCAP file of it')
+    parser.add_argument('--rate', type=positive, default=1.0,
                         help='seconds of the recording each second (default 1)')
-    parser.add_argument('--start', type=float, default=0.0, metavar='SECONDS',
+    parser.add_argument('--start', type=not_negative, default=0.0, metavar='SECONDS',
                         help='begin so far into the recording')
     parser.add_argument('--loop', action='store_true', help='begin again at the end')
     parser.add_argument('--paused', action='store_true', help='wait for ~/pause or ~/step')
@@ -99,11 +107,13 @@ def _parser():
     return parser
 
 
-def _positive(text):
-    value = float(text)
-    if not 0 < value < inf:
-        raise argparse.ArgumentTypeError(f'{text!r}; allowed: a positive number')
-    return value
+def _fail(error):
+    print(f'{EXECUTABLE}: {error}', file=sys.stderr)
+    return USER_ERROR
+
+
+class UnknownType(ValueError):
+    """A topic has a type of message that is not installed; the text is one line."""
 
 
 def quality_of(topic):
@@ -118,6 +128,15 @@ def quality_of(topic):
         durability=durability if durability in _DURABILITIES else 'volatile')
 
 
+def _interface(topic):
+    try:
+        return interface(topic.type_name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise UnknownType(
+            f'{topic.name} has messages of type {topic.type_name}, which is not installed here: '
+            'install it, or choose others with --topics') from error
+
+
 class Player:
     """
     A `Playback` as a ROS node.
@@ -128,12 +147,12 @@ class Player:
 
     def __init__(self, playback, clock, paused, stop, now=time.monotonic):
         self.ros = Node(EXECUTABLE)
-        self.lateness = []
-        """Wall time [s] by which each message was late."""
+        self.lateness = Lateness()
+        """Wall times [s] by which messages were late."""
         self._playback, self._paused = playback, paused
         self._stop, self._now = stop, now
         self._publishers = {
-            name: self.ros.create_publisher(interface(topic.type_name), name,
+            name: self.ros.create_publisher(_interface(topic), name,
                                             quality_of_service(quality_of(topic)))
             for name, topic in playback.topics.items()}
         self._clock = None
@@ -155,7 +174,7 @@ class Player:
         if self._paused:
             return begun + _IDLE
         while self._playback.due <= self._now() < begun + _LONGEST_BURST:
-            self.lateness.append(self._now() - self._playback.due)
+            self.lateness.add(self._now() - self._playback.due)
             self._publish()
         if self._playback.message is None:
             self._stop.requested = True
@@ -169,10 +188,9 @@ class Player:
         logger = self.ros.get_logger()
         for line in self._playback.damage:
             logger.warning(f'damaged: {line}')
-        if self.lateness:
-            late = sorted(self.lateness)
-            logger.info(f'{len(late)} messages played; 99 % were at most '
-                        f'{1e3 * late[(len(late) - 1) * 99 // 100]:.3f} ms late')
+        if self.lateness.count:
+            logger.info(f'{self.lateness.count} messages played; 99 % were at most '
+                        f'{1e3 * self.lateness.quantile(0.99):.3g} ms late')
         self.ros.destroy_node()
 
     def _publish(self):

@@ -23,6 +23,7 @@ import argparse
 import os
 import sys
 
+from rigid_sim_ros.nodes.arguments import positive
 from rigid_sim_ros.nodes.signals import Interrupted, StopRequest
 
 EXECUTABLE = 'rigid_sim_ros2'
@@ -105,7 +106,7 @@ def _add_topic_verbs(verbs):
     publish.add_argument('type', help='of the message, such as geometry_msgs/msg/TwistStamped')
     publish.add_argument('values', nargs='?', default='{}',
                          help='fields of the message as YAML; the others have their defaults')
-    publish.add_argument('-r', '--rate', type=_positive, default=1.0, metavar='HZ',
+    publish.add_argument('-r', '--rate', type=positive, default=1.0, metavar='HZ',
                          help='messages a second (default 1)')
     count = publish.add_mutually_exclusive_group()
     count.add_argument('-1', '--once', action='store_true',
@@ -141,14 +142,3 @@ def _add_node_verbs(verbs):
 def _add_list(verbs, what):
     parser = verbs.add_parser('list', help=f'print the names of all {what}')
     parser.add_argument('-t', '--show-types', action='store_true', help='with their types')
-
-
-def _positive(text):
-    value = float(text)
-    if not 0 < value < float('inf'):
-        raise argparse.ArgumentTypeError(f'{text!r}; allowed: a positive number')
-    return value
-
-
-if __name__ == '__main__':
-    sys.exit(main())

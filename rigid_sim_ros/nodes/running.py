@@ -47,8 +47,7 @@ def run(arguments, stop):
     try:
         own = remove_ros_args(arguments)[1:]
     except RuntimeError as error:
-        # rclpy's own errors for unreadable arguments are RuntimeErrors of a private module
-        return _fail(re.sub(r', at \S+:\d+', '', str(error)))
+        return _fail(readable(error))
     if '--help' in own or '-h' in own:
         print(usage(), end='')
         return 0
@@ -60,6 +59,15 @@ def run(arguments, stop):
         return _run_node(stop)
     finally:
         rclpy.try_shutdown()
+
+
+def readable(error):
+    """
+    Return what an error of rclpy for unreadable arguments says, without lines of its source.
+
+    They are RuntimeErrors of a private module.
+    """
+    return re.sub(r', at \S+:\d+', '', str(error))
 
 
 def _run_node(stop):

@@ -30,7 +30,9 @@ rclpy = pytest.importorskip('rclpy')
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
 from rigid_sim_ros import messages, topics  # noqa: E402
+from rigid_sim_ros.nodes import playing  # noqa: E402
 from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
+from rigid_sim_ros.nodes.signals import StopRequest  # noqa: E402
 from rigid_sim_ros.recording import Recorder  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
@@ -152,7 +154,11 @@ def test_a_signal_ends_it_in_order(bag):
 
 
 @pytest.mark.parametrize('arguments, reason', [
-    (['none'], 'rigid_sim_player: cannot read'), (['none', '--rate', '0'], 'a positive number')])
+    (['none'], 'rigid_sim_player: cannot read'), (['none', '--rate', '0'], 'a positive number'),
+    (['none', '--rate', 'fast'], "--rate: 'fast'; allowed: a positive number"),
+    (['none', '--start', 'nan'], "--start: 'nan'; allowed: a number, 0 or more"),
+    (['none', '--start', 'inf'], "--start: 'inf'; allowed: a number, 0 or more"),
+    (['none', '--ros-args', '-p', 'x'], 'rigid_sim_player: Failed to parse ROS arguments')])
 def test_mistakes_are_told_and_end_with_exit_code_2(arguments, reason, tmp_path):
     root = Path(__file__).resolve().parents[2]
     done = subprocess.run(
@@ -161,3 +167,12 @@ def test_mistakes_are_told_and_end_with_exit_code_2(arguments, reason, tmp_path)
     assert done.returncode == 2
     assert reason in done.stderr
     assert 'Traceback' not in done.stderr
+
+
+def test_type_that_is_not_installed_is_told(bag, monkeypatch, capsys):
+    monkeypatch.setattr(playing, 'interface', lambda name: interface(
+        name.replace('geometry_msgs', 'foreign_msgs')))
+    assert playing.run(['player', str(bag)], StopRequest()) == 2
+    error = capsys.readouterr().err
+    assert f'rigid_sim_player: {POSES} has messages of type geometry_msgs/msg/PoseArray, ' in error
+    assert 'Traceback' not in error
