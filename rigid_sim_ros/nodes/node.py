@@ -28,6 +28,7 @@ from rigid_sim_ros.nodes.counted_warnings import CountedWarnings
 from rigid_sim_ros.nodes.diagnostics import Diagnostics
 from rigid_sim_ros.nodes.display import Display
 from rigid_sim_ros.nodes.entities import Entities
+from rigid_sim_ros.nodes.namesakes import Namesakes
 from rigid_sim_ros.nodes.pacing import NANOSECONDS
 from rigid_sim_ros.nodes.parameters import (
     ParameterError, Parameters, STAMP, unknown_parameter_text)
@@ -86,6 +87,7 @@ class SimulationNode:
             self._publish_transforms()
         self._display = Display(self.publications, self._source, now)
         self._clock_source = ClockSource(self.ros, self.publications, parameters)
+        self._namesakes = Namesakes(self.ros)
         self._diagnostics = Diagnostics(
             self.ros.get_fully_qualified_name(), self.session, self.control, self.refused,
             self.late, self.recording)
@@ -199,6 +201,7 @@ class SimulationNode:
 
     def _report(self):
         self._clock_source.look()
+        self._namesakes.look()
         self._diagnostics.complain(self.ros.get_logger().warning)
         self.recording.report(self.ros.get_logger().error)
         self.publications.send_diagnostics(

@@ -28,6 +28,7 @@ from geometry_msgs.msg import PoseArray, TwistStamped  # noqa: E402, I100
 from node_harness import Client, PATIENCE  # noqa: E402
 from rclpy.context import Context  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
+from rigid_sim_ros.nodes.clock_source import ROW as CLOCK  # noqa: E402
 from rigid_sim_ros.nodes.executors import EVENTS, make_executor, SINGLE_THREADED  # noqa: E402
 from rigid_sim_ros.nodes.interfaces import interface  # noqa: E402
 from rigid_sim_ros.nodes.node import SimulationNode  # noqa: E402
@@ -164,17 +165,39 @@ def test_two_nodes_in_one_process_and_one_clock():
         assert [row.node_namespace for row in info] == ['/left']
 
 
-def test_nodes_that_start_together_settle_on_one_clock():
-    with hosted('left') as ([left], _), hosted('right') as ([right], _):
-        def clock_count():
-            return len(left.ros.get_publishers_info_by_topic('/clock'))
+def settled(nodes, condition):
+    """Let nodes of different contexts work until a condition holds."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, 'waited in vain'
+        for node in nodes:
+            node.work()
+        time.sleep(1e-3)
 
-        deadline = time.monotonic() + PATIENCE
+
+def clock_count(node):
+    return len(node.ros.get_publishers_info_by_topic('/clock'))
+
+
+@pytest.mark.parametrize('other', ['left', 'right'])
+def test_nodes_that_start_together_settle_on_one_clock(other, capfd):
+    with hosted('left') as ([left], _), hosted(other) as ([right], _):
         # the first second is over when both have looked around
-        while clock_count() != 1 or left.session.time < 1_200_000_000:
-            assert time.monotonic() < deadline
-            left.work(), right.work()
-            time.sleep(1e-3)
+        settled([left, right], lambda: (
+            clock_count(left) == clock_count(right) == 1
+            and min(left.session.time, right.session.time) > 1_200_000_000))
+    assert ('2 nodes are named /left/rigid_sim' in capfd.readouterr().err) == (other == 'left')
+
+
+def test_node_takes_over_the_clock_of_one_that_ended():
+    with hosted('right') as ([right], _):
+        with hosted('left') as ([left], _):
+            settled([left, right], lambda: clock_count(left) == 1 == clock_count(right)
+                    and right.session.time > 1_200_000_000)
+            publishing = right if right.publications.is_open(CLOCK) else left
+            waiting = left if publishing is right else right
+            publishing.publications.end(CLOCK)
+            settled([waiting], lambda: waiting.publications.is_open(CLOCK))
 
 
 def test_both_publish_the_clock_if_told_to():
