@@ -68,10 +68,16 @@ def shown(name):
 
 def near_names(name, names):
     """Say which of the names a wrong one may have meant, as a phrase."""
-    near = difflib.get_close_matches(name[:LONGEST_NAME], names, n=3, cutoff=0.5)
+    near = near_names_only(name, names, cutoff=0.5)
     if near:
-        return 'near names: ' + ', '.join(near)
+        return near
     if not names:
         return 'this scene has no moving bodies'
     more = f', ... ({len(names)} in all)' if len(names) > 5 else ''
     return 'the names are: ' + ', '.join(names[:5]) + more
+
+
+def near_names_only(name, names, cutoff=0.6):
+    """Return the same where some names are near, else nothing."""
+    near = difflib.get_close_matches(name[:LONGEST_NAME], names, n=3, cutoff=cutoff)
+    return f'near names: {", ".join(near)}' if near else ''

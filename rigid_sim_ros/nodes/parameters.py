@@ -20,7 +20,6 @@ what is, both at the start and by `ros2 param set`.
 """
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import isfinite
 from typing import Any, Optional
 
@@ -29,6 +28,7 @@ from rclpy.parameter import Parameter
 
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.nodes.commands import BODY_AXES, WORLD_AXES
+from rigid_sim_ros.nodes.counted_warnings import near_names_only
 from rigid_sim_ros.nodes.executors import AUTO, EXECUTORS
 from rigid_sim_ros.recording import DROP, WAIT
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
@@ -177,9 +177,8 @@ class Parameters:
 
 def unknown_parameter_text(name):
     """Say that there is no parameter of a name, and which one may be meant."""
-    near = get_close_matches(name, _ROWS, n=3)
-    return (f'there is no parameter {name!r}: it has no effect'
-            + (f'; near names: {", ".join(near)}' if near else ''))
+    near = near_names_only(name, _ROWS)
+    return f'there is no parameter {name!r}: it has no effect' + (f'; {near}' if near else '')
 
 
 def _nothing():

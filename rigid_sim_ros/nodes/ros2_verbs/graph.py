@@ -14,7 +14,6 @@
 
 """A look at the ROS graph from outside: a hidden node, and waiting for what others offer."""
 
-from difflib import get_close_matches
 import os
 import time
 
@@ -23,6 +22,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+from rigid_sim_ros.nodes.counted_warnings import near_names_only
 from rigid_sim_ros.nodes.executors import LONGEST_WAIT
 
 PATIENCE = 5.0
@@ -114,8 +114,8 @@ class Graph:
         if not self.nodes():
             return (', and no node at all: is one running, with the same ROS_DOMAIN_ID '
                     f'({os.environ.get("ROS_DOMAIN_ID", 0)}) and discovery range?')
-        near = get_close_matches(name, found, n=3)
-        return f'; near names: {", ".join(near)}' if near else ''
+        near = near_names_only(name, found)
+        return f'; {near}' if near else ''
 
     def _wait_until_found(self, condition):
         """Wait until a condition holds, or others are there and nothing changes any more."""
