@@ -20,6 +20,7 @@ from numpy.linalg import LinAlgError
 
 from rigid_sim_ros.nodes.announcement import paused_text
 from rigid_sim_ros.nodes.pacing import Pacer
+from rigid_sim_ros.nodes.signals import Interrupted
 
 IDLE = 0.1
 """Wall time [s] between two looks at the world while paused."""
@@ -78,8 +79,12 @@ class Control:
         """Advance by the parameter `step_duration`, if paused and able to; tell whether it did."""
         if self.failure or not self._session.paused:
             return False
-        with self.failing_softly(), self._stop.breakable():
-            self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
+        try:
+            with self.failing_softly(), self._stop.breakable():
+                self._session.step(self._parameters.step_duration, lambda: self._stop.requested)
+        except Interrupted:
+            # not passed on: executors print what ends a service, and the loop ends anyway
+            self.failure = 'the simulation was broken off: the process has to end'
         self._session.paused = True
         return not self.failure
 
