@@ -142,3 +142,7 @@ def _add_node_verbs(verbs):
 def _add_list(verbs, what):
     parser = verbs.add_parser('list', help=f'print the names of all {what}')
     parser.add_argument('-t', '--show-types', action='store_true', help='with their types')
+
+
+if __name__ == '__main__':
+    sys.exit(main())
