@@ -24,6 +24,7 @@ import pytest
 
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
+from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget, SAVED
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
@@ -220,6 +221,45 @@ def test_a_ball_hits_a_row_as_one_body(restitution):
     expected = [together] * count + [speed - count * together]
     np.testing.assert_allclose(run.state.linear_velocity[0, :count + 1], expected,
                                atol=1e-3 * speed)
+
+
+@pytest.mark.parametrize('restitution', [0.0, 0.5])
+def test_a_long_row_takes_a_hit_to_its_far_end(restitution):
+    """30 cubes on smooth ground: all go on at what momentum and restitution say."""
+    count, speed, step = 30, 2.0, 1 / 240
+    row = [body(f'c{place}', Cube(0.2), position=(0.2 * place, 0.0, 0.1))
+           for place in range(count)]
+    hitter = body('hitter', Cube(0.2), position=(-0.2 - 9.5 * speed * step, 0.0, 0.1),
+                  velocity=(speed, 0.0, 0.0))
+    run = IslandRun([*row, hitter], restitution=restitution, friction=0.0)
+    run.run(16 * step)
+    together = speed * (1 + restitution) / (count + 1)
+    expected = [together] * count + [speed - count * together]
+    np.testing.assert_allclose(run.state.linear_velocity[0, :count + 1], expected, rtol=1e-4)
+
+
+def test_friction_holds_a_long_row_that_is_pushed():
+    """By nine tenths of what all 30 together withstand: nothing moves by a nanometre."""
+    count, friction = 30, 0.5
+    run = IslandRun([body(f'c{place}', Cube(0.2), position=(0.2 * place, 0.0, 0.1))
+                     for place in range(count)], friction=friction)
+    run.state.force[0, 0] = 0.9 * friction * count * GRAVITY
+    start = run.state.position.copy()
+    assert run.run_to_rest(2.0) is not None
+    assert np.abs(run.state.position - start).max() < 1e-9
+
+
+def test_what_quiet_steps_leave_is_there_for_others():
+    """Iterations: saved up to a limit, spent down to none, handed on to the next pile."""
+    budget = Budget([])
+    assert budget.saved == SAVED
+    budget.spend(SAVED + 100, 60)
+    assert budget.saved == 0
+    budget.spend(10, 60)
+    assert budget.saved == 50
+    assert Budget([budget, Budget([budget])]).saved == 50
+    budget.spend(0, 2 * SAVED)
+    assert budget.saved == SAVED
 
 
 @pytest.mark.parametrize('share', [(1.0, 1.0, 1.0), (0.5, 0.5, 1.0), (0.5, 0.5, 0.5)])

@@ -33,6 +33,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.lasting_contact.near import same_poses
+from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget
 from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_WAY, run_into
 from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members, undisturbed
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
@@ -94,6 +95,8 @@ class Pile:
             self.quiet.take_over(pile.quiet)
             self.steps = max(self.steps, pile.steps)
             self._vector = pile.vector_for(island.members, self._vector)
+        self.budget = Budget([pile.budget for pile in older])
+        """Of iterations of the solver."""
         self.contacts = None
         """The `PileContacts` in use."""
         self._forces = None
@@ -226,7 +229,8 @@ class Pile:
         """Return (motion, closed contacts) after a step of `duration` [s]."""
         if self.contacts is None:
             motion = self._renew(motion, free, scales, duration, 0.0)
-        step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces)
+        step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces,
+                        self.budget)
         quick = (duration * self._island.closing(motion) > FAST * scales.length).any()
         for attempt in range(TRIES):
             step.attempt(1 if quick else HIT_ROUNDS)
