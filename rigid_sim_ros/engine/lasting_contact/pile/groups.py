@@ -50,9 +50,9 @@ def resting_members(island, quiet_bodies, motion, free, scales, time, gap):
     of_contact = labels[np.where(a < count, a, b)]
     moved = np.zeros(count, dtype=bool)
     np.logical_or.at(moved, labels, ~calm)
-    for members, places in lone_members(labels, of_contact):
+    for members, places in lone_members(labels, of_contact, calm):
         held = standing(island, free, scales, motion, contacts.select(places.ravel()), members)
-        resting[members[held & calm[members]]] = members[held & calm[members]]
+        resting[members[held]] = members[held]
     contacts_of = dict(alike(of_contact))
     for label, members in alike(labels):
         if resting[members[0]] >= 0 or moved[label] or label not in contacts_of:

@@ -28,15 +28,15 @@ PASSES = 3
 """Each takes what the compliance leaves down by `COMPLIANCE`; `EQUILIBRIUM` is far above that."""
 
 
-def lone_members(labels, of_contact):
+def lone_members(labels, of_contact, calm):
     """
-    Return [(members (g,), their contacts (g, k))], those with as many contacts together.
+    Return [(members (g,), contacts (g, k))] of lone calm ones, with as many contacts together.
 
-    A lone member has a label of `labels` (m,) to itself, which is its index, and contacts:
-    `of_contact` (K,) are the labels of theirs.
+    Calm are those of a mask (m,). A lone member has a label of `labels` (m,) to itself, which is
+    its index, and contacts: `of_contact` (K,) are the labels of theirs.
     """
     count = len(labels)
-    alone = np.bincount(labels, minlength=count) == 1
+    alone = calm & (np.bincount(labels, minlength=count) == 1)
     touching = np.bincount(of_contact, minlength=count)
     places = np.argsort(of_contact, kind='stable')
     first = np.cumsum(touching) - touching
