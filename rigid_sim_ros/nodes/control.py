@@ -129,8 +129,8 @@ class Control:
         else:
             if session.paused:
                 self._logger.info(paused_text(session.simulation, session.time))
-        now = self._now()
-        pacer.published(time, now)
+        begun, now = now, self._now()
+        pacer.published(time, begun, now)
         return now + IDLE if session.paused else pacer.due(session.next_time)
 
     def _fail(self, error):

@@ -29,8 +29,9 @@ that a node which slept for a minute does not run at twice its speed for the nex
 
 CATCH_UP_SPEED = 2.0
 """
-States are published at most this many times as fast as scheduled while lateness is caught up: a
-burst would overrun the queues of subscribers, which are as deep as they need at the usual rate.
+States are begun at most this many times as fast as scheduled while lateness is caught up: a burst
+would overrun the queues of subscribers, which are as deep as they need at the usual rate. What is
+lost to waking up late is made good, up to a period: a few states then follow at once.
 """
 
 
@@ -72,12 +73,15 @@ class Pacer:
         scheduled = self._anchor_wall + (time - self._anchor_time) / self._speed
         return scheduled if scheduled > self._earliest else self._earliest
 
-    def published(self, time, now):
-        """Note that the state of simulated time `time` [ns] was published at `now` [s]."""
+    def published(self, time, begun, now):
+        """Note that the state of time `time` [ns], begun at `begun` [s], was out at `now` [s]."""
         if self._factor == 0:
             return
         lateness = now - self._anchor_wall - (time - self._anchor_time) / self._speed
-        self._earliest = now + self._wall_period / CATCH_UP_SPEED
+        # from where it might have begun, not from now: what takes most of a period to compute, or
+        # a processor that wakes up late, would not be caught up at all
+        self._earliest = (max(self._earliest, begun - self._wall_period)
+                          + self._wall_period / CATCH_UP_SPEED)
         if lateness > self.worst_lateness:
             self.worst_lateness = lateness
         if lateness > self._wall_period:

@@ -33,31 +33,53 @@ def test_due_times_follow_the_factor():
 def test_factor_zero_is_always_due_and_never_late():
     pacer = Pacer(real_time_factor=0.0, period=0.01)
     pacer.anchor(0, now=100.0)
-    pacer.published(10 * MILLISECOND, now=500.0)
+    pacer.published(10 * MILLISECOND, begun=500.0, now=500.0)
     assert pacer.due(NANOSECONDS) < 100.0
     assert (pacer.missed_deadlines, pacer.time_given_up) == (0, 0.0)
 
 
-def test_short_stall_is_caught_up_at_no_more_than_the_catch_up_speed():
+@pytest.mark.parametrize('cost', [0.0, 0.003, 0.007])
+def test_short_stall_is_caught_up_at_no_more_than_the_catch_up_speed(cost):
     period = 0.01
     pacer = Pacer(1.0, period)
     pacer.anchor(0, now=0.0)
     number, now, published = 0, 0.0, []
     stalled = False
-    while now < 2.0:
+    while now < 3.0:
         number += 1
-        now = max(now, pacer.due(number * 10 * MILLISECOND))
+        begun = now = max(now, pacer.due(number * 10 * MILLISECOND))
         if now >= 0.5 and not stalled:
             now, stalled = now + 0.4, True
-        pacer.published(number * 10 * MILLISECOND, now)
+        now += cost
+        pacer.published(number * 10 * MILLISECOND, begun, now)
         published.append(now)
-    gaps = [later - earlier for earlier, later in zip(published, published[1:])]
-    assert min(gaps) >= period / CATCH_UP_SPEED - 1e-12
+    # a few states follow the stall at once, the others at the catch-up speed
+    few = 3
+    for first, later in zip(published, published[few + 1:]):
+        assert later - first >= period / CATCH_UP_SPEED - 1e-12
+    assert published[50 + 20 + few] - published[50] >= 20 * period / CATCH_UP_SPEED - 1e-12
     # caught up: the last states are on time again, and no state was left out
-    assert published[-1] == pytest.approx(number * period)
-    # late by 0.4 s at the stall, then less by half a period with each state, down to one period:
-    # 0.40, 0.395, ..., 0.015
-    assert 76 <= pacer.missed_deadlines <= 80
+    assert published[-1] == pytest.approx(number * period + cost)
+    # late by 0.4 s and the cost at the stall, then less by what each state gains, down to one
+    # period: 0.40, 0.395, ..., 0.015 if they cost nothing; earlier by what the few gained
+    expected = (0.4 + cost - period) / (period - max(cost, period / CATCH_UP_SPEED))
+    assert expected - few - 1 <= pacer.missed_deadlines <= expected + 3
+    assert pacer.time_given_up == 0.0
+
+
+@pytest.mark.parametrize('late, cost', [(0.002, 0.007), (0.009, 0.002)])
+def test_states_that_begin_late_and_take_long_are_caught_up(late, cost):
+    period = 0.01
+    pacer = Pacer(1.0, period)
+    pacer.anchor(0, now=0.0)
+    # behind from the start, and every wait takes longer than asked for
+    now = 0.3
+    for number in range(1, 1001):
+        due = pacer.due(number * 10 * MILLISECOND)
+        begun = now if now >= due else due + late
+        now = begun + cost
+        pacer.published(number * 10 * MILLISECOND, begun, now)
+    assert now <= 1000 * period + late + cost + 1e-9
     assert pacer.time_given_up == 0.0
 
 
@@ -65,11 +87,11 @@ def test_long_stall_moves_the_schedule_and_says_so():
     pacer = Pacer(1.0, 0.01)
     pacer.anchor(0, now=0.0)
     stall = 60.0
-    pacer.published(10 * MILLISECOND, now=0.01 + stall)
+    pacer.published(10 * MILLISECOND, begun=0.01, now=0.01 + stall)
     assert stall > MOST_LATENESS
     assert pacer.time_given_up == pytest.approx(stall)
     assert pacer.due(20 * MILLISECOND) == pytest.approx(0.02 + stall)
-    pacer.published(20 * MILLISECOND, now=0.02 + stall)
+    pacer.published(20 * MILLISECOND, begun=0.02 + stall, now=0.02 + stall)
     assert pacer.missed_deadlines == 1
     assert pacer.worst_lateness == pytest.approx(stall)
 
