@@ -26,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
+from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.graph import component_labels
 from rigid_sim_ros.engine.lasting_contact import advance_island, FEW, Island
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
@@ -99,6 +100,8 @@ class Islands:
         Something has happened to all of them: that they have not moved so far says nothing.
         """
         woken = indices[:0]
+        if not len(indices):
+            return woken
         if self.asleep[indices].any():
             woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
             self.asleep[woken] = False
@@ -146,9 +149,10 @@ class Islands:
 
         `state` is that of all bodies at `start`; its columns of `members` are replaced.
         """
-        parting, resting = [members[:0]], [members[:0]]
+        parting, resting = [], []
         islands = self._current(members, start, end, state)
-        before = state.position[:, members], state.orientation[:, members]
+        columns = columns_of(members)
+        before = state.position[:, columns], state.orientation[:, columns]
         for island in islands:
             outcome = advance_island(island, state, start, end - start)
             self._pairs.update(end, island, outcome.contacts)
@@ -159,20 +163,22 @@ class Islands:
             if not outcome.touching.all():
                 parting.append(_alone(island, outcome.touching | outcome.resting))
         self._spare -= 2 * self._reach.way(members, *before, state)
-        changes = Changes(np.concatenate(parting), np.concatenate(resting))
-        if len(changes.parting) or len(changes.resting):
-            self.touching[changes.parting] = self.touching[changes.resting] = False
-            self.asleep[changes.resting] = True
-            self.active = bool(self.touching.any())
+        if not parting and not resting:
+            return Changes(members[:0], members[:0])
+        changes = Changes(np.concatenate((members[:0], *parting)),
+                          np.concatenate((members[:0], *resting)))
+        self.touching[changes.parting] = self.touching[changes.resting] = False
+        self.asleep[changes.resting] = True
+        self.active = bool(self.touching.any())
         return changes
 
     def _current(self, members, start, end, state):
         """Return the islands of these bodies (k,), made again if they may not be complete."""
-        reach = self._reach.until(state, start, end)
-        motion = 2 * reach[members].max()
+        motion = 2 * self._reach.most(members, state, start, end)
         if self._spare < motion or not np.array_equal(members, self._members):
             self._members = members
-            self._islands, self._spare = self._found(members, state, reach, motion)
+            self._islands, self._spare = self._found(
+                members, state, self._reach.until(state, start, end), motion)
         return self._islands
 
     def _found(self, members, state, reach, motion):

@@ -30,7 +30,8 @@ class _Seen:
     def of_same_pairs(self, contacts):
         """Return whether contacts, in columns of the same island, are of the same pairs."""
         mine = self.contacts
-        return (np.array_equal(mine.body_a, contacts.body_a)
+        return (mine.body_a is contacts.body_a and mine.body_b is contacts.body_b
+                or np.array_equal(mine.body_a, contacts.body_a)
                 and np.array_equal(mine.body_b, contacts.body_b))
 
 

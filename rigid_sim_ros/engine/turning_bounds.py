@@ -38,6 +38,11 @@ class TurningBounds:
             self._arms = (self._radius > 0.0) * np.stack(
                 [np.hypot(extents[i - 1], extents[i - 2]) for i in range(3)])
 
+    @property
+    def tells_axes(self):
+        """Whether it matters about which of its axes a body turns."""
+        return self._arms is not None
+
     def speeds(self, orientation, angular):
         """
         Return bounds (m,) [m/s] of how fast points of the first bodies go about their centres.

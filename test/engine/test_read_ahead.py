@@ -141,6 +141,28 @@ def test_regular_readings_are_evaluated_together(evaluations):
     assert simulation.work.pose_evaluations == sum(evaluations)
 
 
+@pytest.mark.parametrize('heights', [(0.1,), (0.1, 0.1), (0.1, 5.0)])
+def test_steps_of_contact_leave_nothing_to_evaluate(evaluations, heights):
+    """But where something flies: cubes slide on the ground, or one is thrown above it."""
+    shape, friction = Cube(0.2), 0.2
+    bodies = tuple(Body(f'cube_{y}', shape, 1.0, shape.inertia(1.0), (0.0, float(y), height),
+                        velocity=(3.0, 0.0, 0.0), material=Material(friction=friction))
+                   for y, height in enumerate(heights))
+    ground = Plane('ground', material=Material(friction=friction))
+    simulation = Simulation(Scene(bodies, (ground,)))
+    flying = np.array(heights) > 0.1
+    simulation.advance(1e-6)
+    begun = len(evaluations)
+    for _ in range(100):
+        simulation.advance(1 / 240)
+        time = simulation.time
+        fall = 9.81 * np.where(flying, 0.0, friction)
+        np.testing.assert_allclose(simulation.position[:, 0],
+                                   3.0 * time - 0.5 * fall * time ** 2, atol=1e-7)
+        np.testing.assert_allclose(simulation.linear_velocity[:, 0], 3.0 - fall * time, atol=1e-7)
+    assert (len(evaluations) > begun) == flying.any()
+
+
 def test_times_that_were_said_are_evaluated_together(evaluations):
     left = np.cumsum(np.random.default_rng(0).uniform(0.001, 0.01, 300)).tolist()
     simulation = Simulation(drifting(10))

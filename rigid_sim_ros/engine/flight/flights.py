@@ -16,6 +16,7 @@
 
 import numpy as np
 
+from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
 from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
 from rigid_sim_ros.engine.flight.fixed_axis import BLOCK, FixedAxisRotations
@@ -114,11 +115,13 @@ class Flights:
         """
         Keep the state at `time` [s] of bodies (k,) that are not in flight, to the last bit.
 
-        Arguments as for `begin`. What is asked for at other times than this is not their motion.
+        Arguments as for `begin`, indices in ascending order. What is asked for at other times
+        than this is not their motion.
         """
         self.changes += 1
-        self._translations.begin(indices, time, position, linear_velocity, acceleration)
-        self._fixed_axis.hold(indices, orientation, angular_velocity)
+        columns = columns_of(indices)
+        self._translations.begin(columns, time, position, linear_velocity, acceleration)
+        self._fixed_axis.hold(columns, orientation, angular_velocity)
         if self._present:
             self._leave(indices, np.full(len(indices), FIXED_AXIS))
             self._note_present()

@@ -24,6 +24,7 @@ come to rest; what rests is left alone until something wakes it.
 import numpy as np
 
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
+from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.encounters import Encounters
 from rigid_sim_ros.engine.flight import Flights
 from rigid_sim_ros.engine.islands import Islands
@@ -79,7 +80,7 @@ class Exact:
                 self._step_islands(self._islands.step_end(self.time, end), until_collision)
             else:
                 self.time = self._fly(end, until_collision)
-            self._state = None
+                self._state = None
             if until_collision and self._world.events.struck:
                 return
 
@@ -87,10 +88,15 @@ class Exact:
         """Advance everything to `end` [s] or to the first touch before it that lasts."""
         self._gather(end)
         members = np.flatnonzero(self._islands.touching)
+        flies = self._encounters.active
         end = self._fly(end, until_collision)
-        if end > self.time:
-            self._step(members, end)
-            self.time = end
+        changes = end <= self.time or self._step(members, end)
+        self.time = end
+        if flies or changes:
+            self._state = None
+        else:
+            # its columns of members have been replaced, and nobody else moves
+            self._state.time = end
 
     def _gather(self, end):
         """Put those that may meet a body in lasting contact before `end` [s] in with it."""
@@ -149,18 +155,24 @@ class Exact:
         return pairs[0], pairs[1]
 
     def _step(self, members, end):
-        """Step these bodies (k,) to `end` [s], and see who parts and who comes to rest."""
+        """
+        Step these bodies (k,) to `end` [s], and see who parts and who comes to rest.
+
+        Return whether anybody does.
+        """
         state = self.state
         parting, resting = self._islands.advance(members, self.time, end, state)
+        columns = columns_of(members)
         self._flights.hold(
-            members, end, state.position[:, members], state.orientation[:, members],
-            state.linear_velocity[:, members], state.angular_velocity[:, members],
-            self._acceleration[:, members])
+            members, end, state.position[:, columns], state.orientation[:, columns],
+            state.linear_velocity[:, columns], state.angular_velocity[:, columns],
+            self._acceleration[:, columns])
         if len(parting):
             self._begin(parting, end, state)
             self._encounters.fly(parting, end)
         if len(resting):
             self._lay_down(resting, end)
+        return len(parting) > 0 or len(resting) > 0
 
     def _lay_down(self, indices, time):
         """Bodies (k,) lie still from `time` [s] on, whatever forces act on them."""

@@ -27,16 +27,17 @@ class FlightState(State):
     def __init__(self, flights, read_ahead, time, force, torque):
         self._flights = flights
         self._read_ahead = read_ahead
-        self._time = time
+        self.time = time
+        """When it is evaluated [s]."""
         self.force = force
         self.torque = torque
 
     def __getattr__(self, name):
         """Evaluate what has not been read yet; called for attributes that are not there."""
         if name in ('position', 'orientation'):
-            self.position, self.orientation = self._read_ahead.poses(self._time)
+            self.position, self.orientation = self._read_ahead.poses(self.time)
         elif name in ('linear_velocity', 'angular_velocity'):
-            self.linear_velocity, self.angular_velocity = self._flights.velocities(self._time)
+            self.linear_velocity, self.angular_velocity = self._flights.velocities(self.time)
         else:
             raise AttributeError(f'a state has no {name!r}')
         return self.__dict__[name]

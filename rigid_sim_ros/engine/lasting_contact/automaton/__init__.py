@@ -81,7 +81,7 @@ class OnPlane:
         self._began = 0.0
         """When it did [s]."""
         self._left = None
-        """What the last call left the body with: its columns of the quantities of a state."""
+        """The `_arrays` of the state that the last call left."""
 
     def advance(self, state, start, duration):
         """
@@ -90,7 +90,7 @@ class OnPlane:
         Returns (closed contacts in columns of the island, resting) and puts the body's columns
         into the `State`; or returns None and leaves all as it was, if there are too many events.
         """
-        if self._automaton is None or self._columns(state) != self._left:
+        if self._automaton is None or not self._is_left(state):
             # somebody else has moved the body or changed the forces on it
             self._automaton, self._began = self._begun(state), start
         automaton = self._automaton
@@ -105,7 +105,7 @@ class OnPlane:
             self._automaton, numbers = None, [*numbers[:7], *[0.0] * 6]
         self._note(automaton.take_hits())
         self._put(numbers, state)
-        self._left = self._columns(state)
+        self._left = _arrays(state)
         return self._contacts(automaton), resting
 
     def _begun(self, state):
@@ -115,12 +115,11 @@ class OnPlane:
         return Automaton(body, self._numbers(state), scales, units.STICK * scales.speed,
                          self._surfaces, self._island.world.impact_law)
 
-    def _columns(self, state):
-        """Return the body's columns of a `State`, forces included, as lists."""
+    def _is_left(self, state):
+        """Return whether the body's columns of a `State` are as the last call left them."""
         member = self._member
-        return [values[:, member].tolist() for values in (
-            state.position, state.orientation, state.linear_velocity, state.angular_velocity,
-            state.force, state.torque)]
+        return all(now is then or now[:, member].tolist() == then[:, member].tolist()
+                   for now, then in zip(_arrays(state), self._left))
 
     # -- frames --------------------------------------------------------------------------------
 
@@ -209,6 +208,12 @@ class OnPlane:
             body_a, body_b, normal = body_b, body_a, -normal
             feature[feature == FACE_B] = FACE_A
         return body_a, body_b, normal, feature, np.zeros((3, count))
+
+
+def _arrays(state):
+    """Return the arrays of a `State`, forces included; nobody writes into them."""
+    return (state.position, state.orientation, state.linear_velocity, state.angular_velocity,
+            state.force, state.torque)
 
 
 def plane_of(island, state, duration):
