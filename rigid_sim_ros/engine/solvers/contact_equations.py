@@ -41,26 +41,27 @@ class Derivatives(NamedTuple):
     own_motion: np.ndarray
     """(3k,): of each row by its own motion."""
 
-    own_force: np.ndarray
-    """(3k,)"""
-
     cross_motion: np.ndarray
     """(k,): of the first tangent by the second, and the other way round; None if all are zero."""
 
-    cross_force: np.ndarray
-    """(k,), or None with those by motion."""
-
-    normal_force: np.ndarray
-    """(2, k): of both tangents by the normal force, or None if all are zero."""
+    force: np.ndarray
+    """
+    (7k,) by force: of each row by its own, of the first tangent by the second and the other way
+    round, of both by the normal force.
+    """
 
 
 def equations_of(problem, diagonal):
-    """Return the equations of a `ContactProblem`, whose response has this diagonal (3, k)."""
-    steps = np.empty((2, problem.count))
-    steps[0] = diagonal[0]
-    np.maximum(diagonal[1], diagonal[2], out=steps[1])
-    kind = FewEquations if problem.count <= FEW else ManyEquations
-    return kind(1 / steps, problem.friction, problem.floor, problem.slip)
+    """Return the equations of a `ContactProblem`, whose response has this diagonal (3k,)."""
+    count = problem.count
+    normal, first, second = (
+        diagonal[:count], diagonal[count:2 * count], diagonal[2 * count:])
+    if count <= FEW:
+        steps = [1.0 / n for n in normal.tolist()], [
+            1.0 / max(t, u) for t, u in zip(first.tolist(), second.tolist())]
+        return FewEquations(steps, problem.friction, problem.floor, problem.slip)
+    return ManyEquations(1.0 / np.array((normal, np.maximum(first, second))), problem.friction,
+                         problem.floor, problem.slip)
 
 
 class FewEquations:
@@ -78,16 +79,17 @@ class FewEquations:
 
     def __init__(self, steps, friction, floor, slip):
         """See the class."""
-        self._constants = list(zip(*steps.tolist(), friction.tolist(), floor.tolist(),
-                                   *slip.tolist()))
+        self._constants = list(zip(*steps, friction.tolist(), floor.tolist(), *slip.tolist()))
 
     def residual(self, force, motion):
         """Return what is left of the conditions, (3k,), and its size in units of motion."""
-        heads, firsts, seconds, size = [], [], [], 0.0
-        for constants, normal, first, second, motion_n, motion_1, motion_2 in zip(
-                self._constants, *_parts(force, motion)):
-            step_n, step_t, friction, floor, slip_1, slip_2 = constants
-            head = step_n * motion_n
+        force, motion = force.tolist(), motion.tolist()
+        count = len(self._constants)
+        left, square = [0.0] * (3 * count), 0.0
+        for one, (step_n, step_t, friction, floor, slip_1, slip_2) in enumerate(self._constants):
+            two, three = one + count, one + 2 * count
+            normal, first, second = force[one], force[two], force[three]
+            head = step_n * motion[one]
             if head > normal - floor:
                 head = normal - floor
             limit = friction * normal if normal > 0.0 else 0.0
@@ -95,7 +97,7 @@ class FewEquations:
                 first += limit * slip_1
                 second += limit * slip_2
             else:
-                change_1, change_2 = step_t * motion_1, step_t * motion_2
+                change_1, change_2 = step_t * motion[two], step_t * motion[three]
                 target_1, target_2 = first - change_1, second - change_2
                 length = sqrt(target_1 * target_1 + target_2 * target_2)
                 if length <= limit:
@@ -104,17 +106,19 @@ class FewEquations:
                     share = limit / length
                     first -= share * target_1
                     second -= share * target_2
-            heads.append(head)
-            firsts.append(first)
-            seconds.append(second)
+            left[one], left[two], left[three] = head, first, second
             head /= step_n
-            size += head * head + (first * first + second * second) / (step_t * step_t)
-        return np.array(heads + firsts + seconds), sqrt(size)
+            square += head * head + (first * first + second * second) / (step_t * step_t)
+        return np.array(left), sqrt(square)
 
     def derivatives(self, force, motion):
         """Return the `Derivatives` of the residual."""
-        return _derivatives([_derivatives_of(*each) for each in zip(
-            self._constants, *_parts(force, motion))])
+        force, motion = force.tolist(), motion.tolist()
+        count = len(self._constants)
+        return _derivatives([
+            _derivatives_of(constants, force[one], force[one + count], force[one + 2 * count],
+                            motion[one], motion[one + count], motion[one + 2 * count])
+            for one, constants in enumerate(self._constants)])
 
     def sticking(self, motion):
         """
@@ -133,7 +137,7 @@ class ManyEquations(FewEquations):
 
     def __init__(self, steps, friction, floor, slip):
         """See the class."""
-        super().__init__(steps, friction, floor, slip)
+        super().__init__(steps.tolist(), friction, floor, slip)
         self._steps = steps[[0, 1, 1]]
         self._friction, self._floor, self._slip = friction, floor, slip
         slips = slip.any(axis=0)
@@ -164,8 +168,9 @@ class ManyEquations(FewEquations):
         return Derivatives(
             np.concatenate((np.where(closed, steps[0], 0.0), steps[1] * turn_11,
                             steps[1] * turn_22)),
-            np.concatenate((np.where(closed, 0.0, 1.0), 1.0 - turn_11, 1.0 - turn_22)),
-            steps[1] * turn_12, -turn_12, grows * unit)
+            steps[1] * turn_12,
+            np.concatenate((np.where(closed, 0.0, 1.0), 1.0 - turn_11, 1.0 - turn_22,
+                            -turn_12, -turn_12, *(grows * unit))))
 
     def _projected(self, force, change):
         """Return the discs' limits, directions (2, k) in them, limit per length, who slides."""
@@ -182,48 +187,39 @@ class ManyEquations(FewEquations):
         return limit, unit, turn, slides
 
 
-def _parts(force, motion):
-    """Return the three components of force, then those of motion, as lists of k floats."""
-    count = len(force) // 3
-    force, motion = force.tolist(), motion.tolist()
-    return (force[:count], force[count:2 * count], force[2 * count:],
-            motion[:count], motion[count:2 * count], motion[2 * count:])
-
-
 def _derivatives(rows):
     """Return `Derivatives` of k rows, each in the order of `_derivatives_of`."""
-    motion_n, motion_1, motion_2, cross, force_n, force_1, force_2, cross_force, *by_normal = zip(
-        *rows)
-    turns = any(cross)
+    motion_n, motion_1, motion_2, cross, *force = zip(*rows)
     return Derivatives(np.array(motion_n + motion_1 + motion_2),
-                       np.array(force_n + force_1 + force_2),
-                       np.array(cross) if turns else None,
-                       np.array(cross_force) if turns else None,
-                       np.array(by_normal) if any(by_normal[0]) or any(by_normal[1]) else None)
+                       np.array(cross) if any(cross) else None,
+                       np.array([each for part in force for each in part]))
 
 
 def _derivatives_of(constants, normal, first, second, motion_n, motion_1, motion_2):
     """
-    Return the derivatives of one contact: four by motion, six by force.
+    Return the derivatives of one contact: four by motion, seven by force.
 
-    By motion and by force alike: n by n, 1 by 1, 2 by 2, 1 by 2; last 1 and 2 by the normal force.
+    By motion and by force alike: n by n, 1 by 1, 2 by 2, 1 by 2. By force also 2 by 1, 1 by n and
+    2 by n.
     """
     step_n, step_t, friction, floor, slip_1, slip_2 = constants
     motion_nn, force_nn = (step_n, 0.0) if normal - floor > step_n * motion_n else (0.0, 1.0)
     limit, grows = (friction * normal, friction) if normal > 0.0 else (0.0, 0.0)
     if slip_1 or slip_2:
-        return (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0, grows * slip_1, grows * slip_2)
+        return (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0, 0.0, grows * slip_1,
+                grows * slip_2)
     target_1, target_2 = first - step_t * motion_1, second - step_t * motion_2
     length = sqrt(target_1 * target_1 + target_2 * target_2)
     if length <= limit:
-        return motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0
+        return motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     unit_1, unit_2 = target_1 / length, target_2 / length
     # derivative of the projection by its target: across the direction only
     turn = limit / length
     turn_11, turn_22 = turn * unit_2 * unit_2, turn * unit_1 * unit_1
     turn_12 = -turn * unit_1 * unit_2
     return (motion_nn, step_t * turn_11, step_t * turn_22, step_t * turn_12,
-            force_nn, 1.0 - turn_11, 1.0 - turn_22, -turn_12, -grows * unit_1, -grows * unit_2)
+            force_nn, 1.0 - turn_11, 1.0 - turn_22, -turn_12, -turn_12,
+            -grows * unit_1, -grows * unit_2)
 
 
 def _sticking(constants, motion_n, motion_1, motion_2):
@@ -236,7 +232,7 @@ def _sticking(constants, motion_n, motion_1, motion_2):
         slip_1 = slip_2 = friction = 0.0
     elif not (slip_1 or slip_2):
         return ((head, step_t * motion_1, step_t * motion_2),
-                (motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0))
+                (motion_nn, step_t, step_t, 0.0, force_nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return ((head, limit * slip_1, limit * slip_2),
-            (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0,
+            (motion_nn, 0.0, 0.0, 0.0, force_nn, 1.0, 1.0, 0.0, 0.0,
              friction * slip_1, friction * slip_2))

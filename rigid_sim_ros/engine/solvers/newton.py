@@ -58,6 +58,9 @@ _STALLED = 0.5
 _SETTLED = 1e-9
 """Of the free motion: residual at which the choice of forces is made."""
 
+_FEW_VALUES = 30
+"""Up to so many plain floats are quicker."""
+
 _LADDERS = ((1e-2,), (1e-1, 1e-2, 1e-3, 1e-4))
 """
 Compliances, of the mean normal response, on the way down to the canonical one where Newton's
@@ -95,6 +98,13 @@ def solve_newton(problem, guess, accuracy):
     return Solution(best, used, best)
 
 
+def _largest(values):
+    """Return the largest size of some values (n,)."""
+    if len(values) > _FEW_VALUES:
+        return float(np.abs(values).max())
+    return max(map(abs, values.tolist()))
+
+
 class Newton:
     """
     The conditions of one `ContactProblem` with a compliance in every row.
@@ -118,18 +128,18 @@ class Newton:
         self.floor = np.zeros(3 * count)
         """Force (3k,) that is there in any case."""
         self.floor[:count] = problem.floor
-        self._scale = float(np.abs(problem.free).max())
+        self._scale = _largest(problem.free)
         self._matrix = problem.response.copy()
         diagonal = self._matrix.ravel()[::3 * count + 1]
         diagonal += compliance
-        self._equations = equations_of(problem, diagonal.reshape(3, count))
+        self._equations = equations_of(problem, diagonal)
         factor = problem.factor
         self._factor = None
         if (factor is not None and 3 * count >= _FACTORED_ROWS
                 and factor.shape[1] * _FACTORED <= 3 * count):
             self._factor = factor
         # the rounding of matrix @ force is a floor below which no residual gets
-        self._rounding = 5e-16 * count ** 1.5 * float(diagonal.max())
+        self._rounding = 5e-16 * count ** 1.5 * _largest(diagonal)
         self._system = self._at = None
 
     def refined(self, guess, accuracy):
@@ -147,7 +157,7 @@ class Newton:
             if force is None or done:
                 break
             change = force - reference
-            if self._compliance * float(np.abs(change).max()) <= tolerance:
+            if self._compliance * _largest(change) <= tolerance:
                 break
             reference, ahead, done = self._extrapolated(force, change, tolerance)
             refined = self._iterate(reference, ahead, tolerance)
@@ -190,8 +200,7 @@ class Newton:
 
     def _is_solved(self, size, tolerance):
         """Return whether a residual of a size is as small as it should be or can be."""
-        return size <= tolerance or size <= tolerance + self._rounding * float(
-            np.abs(self._at[0]).max())
+        return size <= tolerance or size <= tolerance + self._rounding * _largest(self._at[0])
 
     def _evaluate(self, free, force):
         """Return the residual (3k,) of a force, and its size in units of motion."""
@@ -211,12 +220,12 @@ class Newton:
         reference = force
         if self._system is None:
             self._prepare(self._equations.derivatives(*self._at))
-        size = float(np.abs(change).max())
+        size = _largest(change)
         try:
             for _ in range(canonical.MAX_PASSES):
                 change = self._system.solve(self._system.of_motion(self._compliance * change))
                 reference, force = force, force + change
-                before, size = size, float(np.abs(change).max())
+                before, size = size, _largest(change)
                 if self._compliance * size <= tolerance:
                     break
                 if size > _STALLED * before:

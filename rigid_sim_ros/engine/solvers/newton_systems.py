@@ -20,6 +20,8 @@ contact's 3 x 3 each, as `contact_equations.Derivatives` gives them. Most are so
 of a problem five times or so: a large one is inverted when it is asked for the second time.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 _SMALL = 24
@@ -41,22 +43,13 @@ class DenseSystem:
     def __init__(self, derivatives, matrix):
         """See the class."""
         size = len(matrix)
-        count = size // 3
-        own, own_force, cross, cross_force, by_normal = derivatives
-        self._count, self._own, self._cross = count, own, cross
-        system = self._system = own[:, None] * matrix
-        flat = system.ravel()
-        flat[::size + 1] += own_force
-        first, second = count * size, 2 * count * size
-        if cross is not None:
-            cross = cross[:, None]
-            system[count:2 * count] += cross * matrix[2 * count:]
-            system[2 * count:] += cross * matrix[count:2 * count]
-            flat[first + 2 * count:second:size + 1] += cross_force
-            flat[second + count::size + 1] += cross_force
-        if by_normal is not None:
-            flat[first:second:size + 1] += by_normal[0]
-            flat[second::size + 1] += by_normal[1]
+        self._own, self._cross, by_force = derivatives
+        system = self._system = self._own[:, None] * matrix
+        if self._cross is not None:
+            count = size // 3
+            system.reshape(3, count, size)[1:] += (
+                self._cross[:, None] * matrix.reshape(3, count, size)[:0:-1])
+        system.ravel()[_places(size)] += by_force
         # a small one is inverted in the time in which it is solved
         self._is_spared, self._inverse = size > _SMALL, None
 
@@ -73,10 +66,18 @@ class DenseSystem:
         """Return the residual (3k,) that a motion makes."""
         residual = self._own * motion
         if self._cross is not None:
-            count = self._count
-            residual[count:2 * count] += self._cross * motion[2 * count:]
-            residual[2 * count:] += self._cross * motion[count:2 * count]
+            residual.reshape(3, -1)[1:] += self._cross * motion.reshape(3, -1)[:0:-1]
         return residual
+
+
+@lru_cache(maxsize=64)
+def _places(size):
+    """Return where `Derivatives.force` goes in a flat matrix of so many rows."""
+    count = size // 3
+    normal, first, second = np.arange(size).reshape(3, count)
+    rows = np.concatenate((normal, first, second, first, second, first, second))
+    columns = np.concatenate((normal, first, second, second, first, normal, normal))
+    return rows * size + columns
 
 
 class FactoredSystem:
@@ -98,13 +99,14 @@ class FactoredSystem:
 
     def __init__(self, derivatives, factor, compliance):
         """Raise LinAlgError if a contact by itself is singular; never with a compliance."""
-        own, own_force, cross, cross_force, by_normal = derivatives
+        own, cross, by_force = derivatives
         if cross is None:
-            cross = cross_force = np.zeros(len(own) // 3)
+            cross = np.zeros(len(own) // 3)
         self._own, self._cross = own.reshape(3, -1, 1), cross[:, None]
-        self._pull = 0.0 if by_normal is None else by_normal[:, :, None]
-        normal, t11, t22 = (own_force + compliance * own).reshape(3, -1)
-        t12 = cross_force + compliance * cross
+        by_force = by_force.reshape(7, -1)
+        self._pull = by_force[5:, :, None]
+        normal, t11, t22 = by_force[:3] + compliance * own.reshape(3, -1)
+        t12 = by_force[3] + compliance * cross
         determinant = t11 * t22 - t12 * t12
         if not normal.all() or not determinant.all():
             raise np.linalg.LinAlgError
