@@ -28,6 +28,12 @@ from rigid_sim_ros.scene.yaml_values import parse_yaml
 SOME_NAME = 'body'
 """What a body is called that comes without a name."""
 
+MOST_REPEATS = 4
+"""
+Repeats in a pattern, each of which multiplies the ways to match a name by its length at most. A
+repeated group would raise them to its power, and searching could take for ever.
+"""
+
 
 class EntityError(ValueError):
     """What was asked for cannot be done; the text is one line."""
@@ -69,6 +75,20 @@ def described_body(text, uri):
     return bodies[0]
 
 
+def _searcher(pattern):
+    """Return the function that finds a regular expression; raises `EntityError`."""
+    try:
+        found = re.compile(pattern).search
+    except (re.error, OverflowError, RecursionError) as error:
+        raise EntityError(f'{shown(pattern)} is no regular expression: {error}') from error
+    # without what is meant literally
+    plain = re.sub(r'\\.|\[\^?\]?[^]]*\]', 'x', pattern, flags=re.DOTALL)
+    if re.search(r'\)\s*[*+{]', plain) or len(re.findall('[*+?{]', plain)) > MOST_REPEATS:
+        raise EntityError(f'{shown(pattern)} may take for ever to look for: at most '
+                          f'{MOST_REPEATS} repeats are allowed, and none of a group in ()')
+    return found
+
+
 def _described_scene(text):
     """Return what `load_scene` takes for a description; raises `SceneError`."""
     content = parse_yaml(text, 'description')
@@ -91,10 +111,7 @@ class Entities:
 
     def matching(self, pattern):
         """Return the names in which a regular expression is found; raises `EntityError`."""
-        try:
-            found = re.compile(pattern).search
-        except (re.error, OverflowError, RecursionError) as error:
-            raise EntityError(f'{shown(pattern)} is no regular expression: {error}') from error
+        found = _searcher(pattern)
         return tuple(name for name in self.names if found(name))
 
     def body(self, name):

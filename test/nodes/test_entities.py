@@ -113,6 +113,21 @@ def test_what_is_no_regular_expression(entities, pattern):
     assert len(str(error.value)) < 300 and '\n' not in str(error.value)
 
 
+@pytest.mark.parametrize('pattern', [
+    '(e+)+$', '(e|ee)*$', r'([^)]|\w){20}$', '(?x)(e+) +$', 'e*' * 5 + '$', 'e?' * 30 + '$'])
+def test_pattern_that_may_take_for_ever(entities, pattern):
+    entities.spawn(described_body(CUBE, ''), 'e' * 30 + '!')
+    with pytest.raises(EntityError, match='may take for ever'):
+        entities.matching(pattern)
+
+
+@pytest.mark.parametrize('pattern, expected', [
+    (r'^o\w+$', ('one',)), ('(o|z)', ('one', 'two')), ('[n*+?]e$', ('one',)),
+    (r'\)*[)*+?{]*wa(l{1,2})?$', ('wall',)), ('^.+_.+_.+_.+$', ())])
+def test_patterns_that_are_found_at_once(entities, pattern, expected):
+    assert entities.matching(pattern) == expected
+
+
 @pytest.mark.parametrize('text, uri, reason', [
     ('{cube: {edge: -1}, mass: 1}', '', 'edge'), ('{cube: {edge: 1}}', '', 'mass'),
     ('cube: [', '', 'not valid YAML'),
