@@ -142,9 +142,9 @@ class Template:
         values = np.frombuffer(self._message, np.float64, count * width, 4 + offset)
         return values.reshape(count, width)
 
-    def set_time(self, time_ns, offset=0):
-        """Write a builtin_interfaces/Time at an offset of the payload."""
-        _TIME.pack_into(self._message, 4 + offset, *divmod(time_ns, NANOSECONDS))
+    def set_time(self, time_ns):
+        """Write the builtin_interfaces/Time that the payload begins with."""
+        _TIME.pack_into(self._message, 4, *divmod(time_ns, NANOSECONDS))
 
     def continued(self):
         """Return a `Writer` that goes on after a copy of the message as it is filled in now."""

@@ -166,10 +166,12 @@ class Recording:
 
     def _new_recorder(self):
         parameters = self._parameters
+        number = self._count
         while True:
-            path = self._next_path()
+            number += 1
+            path = self._path(number)
             try:
-                return Recorder(
+                recorder = Recorder(
                     path, self._rows(), compression=parameters.record_compression,
                     when_full=parameters.record_when_full,
                     max_bytes=round(1e6 * parameters.record_split_size),
@@ -181,15 +183,17 @@ class Recording:
                 if path == parameters.record_path or not os.path.lexists(
                         os.path.expanduser(path)):
                     raise
+            else:
+                self._count = number
+                return recorder
 
-    def _next_path(self):
-        """Return a path no recording of this run has had."""
+    def _path(self, number):
+        """Return the path of the recording of a number, counted from 1 for the first."""
         given = self._parameters.record_path
         if not given:
             scene = Path(self._parameters.scene).stem
             given = f'{FOLDER}/{scene}_{datetime.now():%Y_%m_%d-%H_%M_%S}'
-        self._count += 1
-        return given if self._count == 1 else f'{given}_{self._count}'
+        return given if number == 1 else f'{given}_{number}'
 
     def _warn_full(self):
         consequence = ('simulated time waits for it' if self._parameters.record_when_full == WAIT

@@ -80,7 +80,7 @@ class Bag:
     """
 
     def __init__(self, path):
-        self.path = os.path.abspath(path)
+        self.path = os.path.abspath(os.path.expanduser(path))
         self.files = bag_files(self.path)
         self.damage = []
         """What could not be read, one line each."""

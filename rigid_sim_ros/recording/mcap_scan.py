@@ -89,10 +89,6 @@ class McapScan:
             self._stream.close()
             raise RecordingError(f'{self.path} is not an MCAP file')
 
-    def close(self):
-        """Close the file."""
-        self._stream.close()
-
     def messages(self):
         """Go through the messages in file order: channel, number, time [ns] and data of each."""
         with self._stream:

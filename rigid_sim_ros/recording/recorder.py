@@ -72,7 +72,6 @@ class RecorderState:
     """Bytes written to the disk."""
 
     queued_count: int
-    queued_bytes: int
     dropped_count: int
     """Messages lost because the queue was full or the recording had failed."""
 
@@ -160,7 +159,7 @@ class Recorder:
             return RecorderState(
                 self._phase, self.path, self._error, self._bag.message_count,
                 self._bag.byte_count, waiting.message_count if waiting else 0,
-                waiting.byte_count if waiting else 0, self._dropped_count)
+                self._dropped_count)
 
     def write(self, topic_name, time_ns, data):
         """

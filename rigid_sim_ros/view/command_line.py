@@ -16,6 +16,7 @@
 
 import argparse
 from math import nan
+import os
 from pathlib import Path
 import re
 import sys
@@ -117,7 +118,7 @@ def _joined(arguments):
 
 
 def _output(text):
-    path = Path(text)
+    path = Path(os.path.expanduser(text))
     if path.suffix not in SUFFIXES:
         raise argparse.ArgumentTypeError(f'{text!r} must end in .png, .gif or .mp4')
     return path

@@ -85,6 +85,10 @@ def test_recording_can_be_switched_and_never_replaces_another(tmp_path):
         poses = client.listen('~/poses')
         client.spin_until(lambda: poses, 'a state')
         assert not client.call('~/record', data=False).success
+        (tmp_path / 'bag').mkdir()
+        refused = client.call('~/record', data=True)
+        assert not refused.success and 'is there already' in refused.message
+        (tmp_path / 'bag').rmdir()
         first = client.call('~/record', data=True)
         assert first.success and path_in(first.message) == str(tmp_path / 'bag')
         again = client.call('~/record', data=True)

@@ -44,6 +44,11 @@ def test_arrays_names_and_times_come_back(bag, run):
     assert (found.finished, found.damage) == (True, ())
 
 
+def test_a_bag_at_home_is_found(bag, monkeypatch):
+    monkeypatch.setenv('HOME', str(bag.parent))
+    assert recording.read(f'~/{bag.name}').path == str(bag)
+
+
 def test_one_file_is_read_as_the_folder_is(bag):
     found = recording.read(bag / 'sound_0.mcap')
     assert len(found.time) == 100

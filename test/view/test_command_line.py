@@ -29,10 +29,10 @@ from rigid_sim_ros.view.labels import CONTACT_COLOR
 SMALL = ['--size', '96x64']
 
 
-def test_a_picture(tmp_path, capsys):
-    path = tmp_path / 'start.png'
-    assert main(['ten_cubes', '-o', str(path), *SMALL]) == 0
-    with Image.open(path) as image:
+def test_a_picture(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    assert main(['ten_cubes', '-o', '~/start.png', *SMALL]) == 0
+    with Image.open(tmp_path / 'start.png') as image:
         assert image.size == (96, 64)
         # bodies of seven colours, ground and sky
         assert len(image.getcolors(96 * 64)) > 100
