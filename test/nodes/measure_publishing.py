@@ -58,6 +58,12 @@ POSES, TYPE = resolve('~/poses'), 'geometry_msgs/msg/PoseArray'
 ON_TIME = 1e-3
 """[s]"""
 
+DEPTH = 100
+"""
+Of the subscriber's queue: a tenth of a second at 1 kHz. A machine with other things to do leaves a
+process waiting for longer than the 10 ms of a queue of ten, and it is the reader that loses then.
+"""
+
 
 class Reader:
     """Reads poses from a domain."""
@@ -69,7 +75,7 @@ class Reader:
         self._executor, _ = make_executor(AUTO, self._context)
         self._executor.add_node(self._node)
         self._node.create_subscription(
-            interface(TYPE), POSES, self._receive, QoSProfile(depth=10), raw=True)
+            interface(TYPE), POSES, self._receive, QoSProfile(depth=DEPTH), raw=True)
         self._times, self._stamps = [], []
 
     def close(self):
