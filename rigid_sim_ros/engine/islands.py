@@ -151,8 +151,9 @@ class Islands:
         """
         parting, resting = [], []
         islands = self._current(members, start, end, state)
-        columns = columns_of(members)
-        before = state.position[:, columns], state.orientation[:, columns]
+        if self._spare < inf:
+            columns = columns_of(members)
+            before = state.position[:, columns], state.orientation[:, columns]
         for island in islands:
             outcome = advance_island(island, state, start, end - start)
             self._pairs.update(end, island, outcome.contacts)
@@ -162,7 +163,8 @@ class Islands:
                     _groups(island, outcome.contacts)[outcome.resting]]
             if not outcome.touching.all():
                 parting.append(_alone(island, outcome.touching | outcome.resting))
-        self._spare -= 2 * self._reach.way(members, *before, state)
+        if self._spare < inf:
+            self._spare -= 2 * self._reach.way(members, *before, state)
         if not parting and not resting:
             return Changes(members[:0], members[:0])
         changes = Changes(np.concatenate((members[:0], *parting)),
@@ -174,8 +176,11 @@ class Islands:
 
     def _current(self, members, start, end, state):
         """Return the islands of these bodies (k,), made again if they may not be complete."""
+        same = np.array_equal(members, self._members)
+        if same and self._spare == inf:
+            return self._islands
         motion = 2 * self._reach.most(members, state, start, end)
-        if self._spare < motion or not np.array_equal(members, self._members):
+        if self._spare < motion or not same:
             self._members = members
             self._islands, self._spare = self._found(
                 members, state, self._reach.until(state, start, end), motion)
@@ -213,6 +218,9 @@ class Islands:
         islands = [self._island(members[of_member == label], a[of_pair == label],
                                 b[of_pair == label])
                    for label in sorted({*of_member.tolist()})]
+        if len(members) == 1 == len(a) == int(solid.sum()) - 1:
+            # there is nobody else to come near, nor anything to tell apart
+            return islands, inf
         return islands, float(gap[~near].min(initial=margin))
 
     def _island(self, members, body_a, body_b):

@@ -49,6 +49,9 @@ FLAT = 4.0
 LANDED = 1e-12
 """Of the length scale: how near to the plane a point is that touches it."""
 
+CLOSE = 1e-4
+"""Of a step: how far beyond its end, or short of it, its interpolant is as good as the step."""
+
 FACE = 4
 """Corners of one."""
 
@@ -145,8 +148,10 @@ class Automaton(ContactState):
         if event is not None:
             event()
             self._rates, self._taken = self.begin(), None
-        elif self.lifting() or self.drifting():
+        elif self.lifting():
             self._rates, self._taken = self.begin(), None
+        elif self.drifting():
+            self._rates, self._taken = self.put_down(), None
 
     def _state_in(self, step, time):
         """Return the state at a time [s] since a step began."""
@@ -211,8 +216,12 @@ class Automaton(ContactState):
 
         If it is that a point touches, the time is corrected until the point does.
         """
+        step = None
         for _ in range(_CORRECTIONS):
-            step = self._tried(rates, time, going)
+            if step is not None and abs(time - step.size) <= CLOSE * step.size:
+                step = step.ended(time)
+            else:
+                step = self._tried(rates, time, going)
             if point is None:
                 break
             gap = self.body.gaps(step.end)[point] - self.level(point)

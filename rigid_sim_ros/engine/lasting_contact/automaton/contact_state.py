@@ -159,10 +159,7 @@ class ContactState:
                 break
             self.closed = [point for point in self.closed if point not in lifting]
             self._unarmed.update(lifting)
-        if self.closed and self.drifting():
-            self._put_down()
-            rates = self.rates(self.state)
-        return rates
+        return self.put_down() if self.drifting() else rates
 
     def lifting(self):
         """Return the closed points that have no force on them and leave the plane."""
@@ -198,8 +195,8 @@ class ContactState:
         return [slip is None and hypot(x, y) < most * z
                 for slip, (x, y, z) in zip(slips, forces)]
 
-    def _put_down(self):
-        """Put the closed points on the plane; stop them along its normal, or where they stick."""
+    def put_down(self):
+        """Put closed points on the plane, stop them where they may not go; return the rates."""
         body = self.body
         sticks = self._sticking()
         turn = body.turn(self.state)
@@ -210,6 +207,7 @@ class ContactState:
                          [False] * len(arms))
             self.state = normalized(displaced(self.state, *moves))
         self.hold(self.closed, sticks)
+        return self.rates(self.state)
 
     def rearm(self):
         """Arm the points that have risen high enough to touch again."""

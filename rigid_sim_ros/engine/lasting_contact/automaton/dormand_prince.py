@@ -20,6 +20,7 @@ of order 4 is that of Hairer, Norsett and Wanner 1993, section II.6. Plain lists
 faster than arrays for the thirteen numbers of a rigid body.
 """
 
+from copy import copy
 from functools import cached_property
 
 _A = (
@@ -35,6 +36,9 @@ _E1, _E3, _E4, _E5, _E6, _E7 = (
 _D1, _D3, _D4, _D5, _D6, _D7 = (
     -12715105075 / 11282082432, 87487479700 / 32700410799, -10690763975 / 1880347072,
     701980252875 / 199316789632, -1453857185 / 822651844, 69997945 / 29380423)
+
+ALL = slice(None)
+"""Of the numbers of a state."""
 
 
 class Step:
@@ -72,7 +76,11 @@ class Step:
 
     @cached_property
     def between(self):
-        """Return a function of the time since the start that gives the state there."""
+        """
+        Return a function of the time since the start that gives the state there.
+
+        Or a slice of its numbers, if that is its second argument.
+        """
         h = self.size
         rows = []
         for y, z, a, c, d, e, f, g in zip(self.start, self.end, *self._stages):
@@ -81,9 +89,22 @@ class Step:
             rows.append((y, change, bump, change - h * g - bump, h * (
                 _D1 * a + _D3 * c + _D4 * d + _D5 * e + _D6 * f + _D7 * g)))
 
-        def at(time):
+        def at(time, part=ALL):
             s = time / h
             t = 1.0 - s
-            return [r1 + s * (r2 + t * (r3 + s * (r4 + t * r5))) for r1, r2, r3, r4, r5 in rows]
+            return [r1 + s * (r2 + t * (r3 + s * (r4 + t * r5)))
+                    for r1, r2, r3, r4, r5 in rows[part]]
 
         return at
+
+    def ended(self, time):
+        """
+        Return the step with its end at a time since the start close to where it was.
+
+        That end is the interpolant's, which differs from a step's own by the square of how far it
+        is moved. Its rates stay those of the end before.
+        """
+        step = copy(self)
+        step.end = self.between(time)
+        step.size = time
+        return step

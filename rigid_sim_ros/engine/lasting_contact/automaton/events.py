@@ -16,7 +16,8 @@
 
 from math import hypot
 
-from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import dot, SPIN
+from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import (
+    dot, HEIGHT, SPIN)
 
 _TURNED = 0.5
 """Cosine of how far the direction of sliding may turn in a step."""
@@ -44,8 +45,8 @@ def first(automaton, started, step):
     for point, end in _touching(automaton, step):
         level = automaton.level(point)
         found.append((_crossing(
-            lambda time, point=point: automaton.body.gaps(step.between(time))[point] - level, end),
-            automaton.land, point))
+            lambda time, point=point: automaton.body.gap(
+                step.between(time, HEIGHT), point) - level, end), automaton.land, point))
     for which, point, direction in _stopping(automaton, started):
         if direction is None:
             return step.size, None, None, True
@@ -167,11 +168,11 @@ def _crossing(function, end):
         if low < _EARLIEST * end:
             return 0.0
         value_low = function(low)
-    side = 0
+    side, middle = 0, high
     for _ in range(_ROUNDS):
-        middle = (low * value_high - high * value_low) / (value_high - value_low)
+        before, middle = middle, (low * value_high - high * value_low) / (value_high - value_low)
         value = function(middle)
-        if value == 0.0 or high - low <= _ROUNDING * end:
+        if value == 0.0 or abs(middle - before) <= _ROUNDING * end:
             break
         if value > 0.0:
             low, value_low = middle, value

@@ -24,6 +24,9 @@ from math import sqrt
 
 POSITION, ORIENTATION, VELOCITY, SPIN = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 
+HEIGHT = slice(2, 7)
+"""What tells how high points are."""
+
 
 def cross(a, b):
     """Return the vector product of triples."""
@@ -103,6 +106,16 @@ class PlaneBody:
         s = 2.0 / (x * x + y * y + z * z + w * w)
         g, h, i = s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y)
         return [height + g * x + h * y + i * z for x, y, z in self.corners]
+
+    def gap(self, height, point):
+        """Return the height [m] of one point, given the `HEIGHT` numbers of a state."""
+        level, x, y, z, w = height
+        if self.is_ball:
+            return level - self.radius
+        s = 2.0 / (x * x + y * y + z * z + w * w)
+        a, b, c = self.corners[point]
+        return (level + s * (x * z - w * y) * a + s * (y * z + w * x) * b
+                + (1.0 - s * (x * x + y * y)) * c)
 
     def velocities(self, state, arms):
         """Return the velocities [m/s] of points with these arms."""
