@@ -60,8 +60,8 @@ ON_TIME = 1e-3
 
 DEPTH = 100
 """
-Of the subscriber's queue: a tenth of a second at 1 kHz. A machine with other things to do leaves a
-process waiting for longer than the 10 ms of a queue of ten, and it is the reader that loses then.
+Of the queues of node and subscriber: a tenth of a second at 1 kHz. A machine with other things to do
+leaves a process waiting for longer than the 10 ms of queues of ten.
 """
 
 
@@ -126,7 +126,7 @@ def measure(pid, domain_id, duration):
 def publish_alone(count, rate):
     """Publish as many bytes as poses of so many bodies take, for ever."""
     rclpy.init()
-    publisher = Node('rigid_sim').create_publisher(interface(TYPE), POSES, 10)
+    publisher = Node('rigid_sim').create_publisher(interface(TYPE), POSES, DEPTH)
     data = PoseArrayEncoder('world', count).encode(0, np.zeros((count, 3)), np.zeros((count, 4)))
     start, number = time.monotonic(), 0
     while True:
@@ -139,7 +139,8 @@ def measure_node(count, rate, duration):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / 'drift.yaml'
         path.write_text(SCENE.format(count=list(count)))
-        with NodeProcess(folder, scene=path, publish_rate=rate) as process:
+        depth = {f'qos_overrides.{POSES}.publisher.depth': DEPTH}
+        with NodeProcess(folder, scene=path, publish_rate=rate, **depth) as process:
             return measure(process.process.pid, process.domain_id, duration)
 
 
