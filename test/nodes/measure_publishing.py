@@ -60,8 +60,8 @@ ON_TIME = 1e-3
 
 DEPTH = 100
 """
-Of the queues of node and subscriber: a tenth of a second at 1 kHz. A machine with other things to do
-leaves a process waiting for longer than the 10 ms of queues of ten.
+Of the queues of node and subscriber: a tenth of a second at 1 kHz. A machine with other things to
+do leaves a process waiting for longer than the 10 ms of queues of ten.
 """
 
 
