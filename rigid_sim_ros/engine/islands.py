@@ -90,8 +90,12 @@ class Islands:
 
     def add(self, indices):
         """From now on these bodies (k,) are in lasting contact."""
-        if len(indices):
-            self.touching[indices] = self.active = True
+        if not len(indices):
+            return
+        if self._spare < inf and not self.touching[indices].all():
+            # who comes back from flight may have come anywhere
+            self._spare = -inf
+        self.touching[indices] = self.active = True
 
     def wake(self, indices):
         """
