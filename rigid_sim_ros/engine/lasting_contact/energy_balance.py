@@ -85,7 +85,7 @@ class Ending(NamedTuple):
 
 def ending_of(trial, before, near, which):
     """Return the `Ending` of a step, with the impulses of its second half at contacts (m,) int."""
-    return Ending(trial, before, *second_half(before, near, which), near)
+    return Ending(trial, before, *second_half(before, near, which, trial.step), near)
 
 
 class Group(NamedTuple):

@@ -64,8 +64,8 @@ class Island:
         """Whether there is friction against rolling or pivoting."""
         self.automata = {}
         """What has been set up for one member on one plane, by the place of the pair."""
-        self.impulses = memory_of(older, pairs_a, pairs_b)
-        """`Impulses` of the last step's halves, by name."""
+        self.forces = memory_of(older, pairs_a, pairs_b)
+        """Impulses per time of the last step's halves, by name: see `Near.struck`."""
         self._found = None
         """The margins [m], the `Motion` and its contacts that were found last."""
         self._near = None

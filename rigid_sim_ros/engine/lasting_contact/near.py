@@ -110,37 +110,40 @@ class Near:
         pairs = [self.body_pairs[contact] for contact in which]
         return [which[group] for group in connected(pairs, moving)]
 
-    def struck(self, motion, which, half, bias=None, slip=None):
+    def struck(self, motion, which, half, time, bias=None, slip=None):
         """
         Return (the motion after the impulses that keep contacts (m,) int from closing, these).
 
         That is velocities across them, plus `bias` (3, k) in contact axes, of no approach, with
         friction; `slip` (2, k) are directions known, see `ContactProblem`. `half` names what they
-        are for: the last impulses of the same name are what the solver starts from. The impulses
-        (3, k) are in contact axes.
+        are for, `time` [s] is that of the step: the last forces of the same name are what the
+        solver starts from. The impulses (3, k) are in contact axes.
         """
         count = self.count
         free = self.rows.components(self.across(motion)).reshape(3, count)
         if bias is not None:
             free += bias
-        guess = self._remembered(half)
+        guess = self._remembered(half, time)
         impulse, start = np.zeros((2, 3, count))
         closing = free[0, which] < 0.0
         if guess is not None:
             closing |= guess[0, which] > 0.0
         rounding = -canonical.ACCURACY * float(np.abs(free[:, which]).max())
-        while closing.any():
+        joining = set(which[closing].tolist())
+        while joining:
             for group in self.groups(which[closing]):
-                impulse[:, group], start[:, group] = self._solved(free, group, slip, guess)
+                # whom nobody joins has been solved
+                if not joining.isdisjoint(group.tolist()):
+                    impulse[:, group], start[:, group] = self._solved(free, group, slip, guess)
             # many contacts are not reached: who is left out has to open by itself
             after = free[0] + self._response[:count] @ impulse.ravel()
             overlooked = ~closing & (after[which] < rounding)
-            if not overlooked.any():
-                break
             closing |= overlooked
+            joining = set(which[overlooked].tolist())
             guess = start
-        self.island.impulses[half] = (self.scene_pairs, self.contacts.point,
-                                      self.rows.world(start.ravel()))
+        if time > 0.0:
+            self.island.forces[half] = (self.scene_pairs, self.contacts.point,
+                                        self.rows.world(start.ravel()) / time)
         struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
         if self.island.resists_spin:
             struck = self._resisted(struck, impulse)
@@ -167,18 +170,18 @@ class Near:
         return replace(motion, **dict(zip(
             ('linear', 'angular'), resistance.applied(motion.linear, motion.angular))))
 
-    def _remembered(self, half):
+    def _remembered(self, half, time):
         """
-        Return the last impulses of that name in contact axes, (3, k), or None.
+        Return the last forces of that name for a time [s] in contact axes, (3, k), or None.
 
         Each is that of the nearest point of the same pair, if that has no nearer one now: which
         points there are, and in what order, changes as bodies turn. It matters: where there is
         more than one solution, as friction may have, the one nearby is that which goes on.
         """
-        last = self.island.impulses.get(half)
+        last = self.island.forces.get(half)
         if last is None or not last[0]:
             return None
-        pairs, points, impulses = last
+        pairs, points, forces = last
         world = np.zeros((3, self.count))
         away = self.contacts.point[:, :, None] - points[:, None, :]
         square = (away * away).sum(axis=0)
@@ -186,7 +189,7 @@ class Near:
         square[(mine[:, None] != theirs).any(axis=2)] = np.inf
         nearest, rows = square.argmin(axis=1), np.arange(self.count)
         known = (square.argmin(axis=0)[nearest] == rows) & (square[rows, nearest] < np.inf)
-        world[:, known] = impulses[:, nearest[known]]
+        world[:, known] = time * forces[:, nearest[known]]
         return self.rows.components(world).reshape(3, -1)
 
     def _solved(self, free, group, slip, guess):
@@ -226,7 +229,7 @@ def same_poses(one, other):
 
 def memory_of(islands, pairs_a, pairs_b):
     """
-    Return what islands have in their `impulses` of these pairs (p,) int, together.
+    Return what islands have in their `forces` of these pairs (p,) int, together.
 
     Of these only: an island that also kept the others' would hand them on, and all memory would
     double whenever islands are found anew.
@@ -234,7 +237,7 @@ def memory_of(islands, pairs_a, pairs_b):
     wanted = set(zip(pairs_a.tolist(), pairs_b.tolist()))
     together = {}
     for island in islands:
-        for half, (pairs, points, world) in island.impulses.items():
+        for half, (pairs, points, world) in island.forces.items():
             kept = [place for place, (a, b) in enumerate(pairs)
                     if (a, b) in wanted or (b, a) in wanted]
             before = together.get(half, ([], np.zeros((3, 0)), np.zeros((3, 0))))

@@ -78,7 +78,7 @@ def at_rest(free, scales, motion, near, touching):
     if not touching.size or not slow(island, scales, motion).all():
         return False
     return bool(_held(island, scales, second_half(
-        free.kicked(motion.stopped(), 1.0), near, touching, STATIC)[0]).all())
+        free.kicked(motion.stopped(), 1.0), near, touching, 1.0, STATIC)[0]).all())
 
 
 def _held(island, scales, left):

@@ -119,17 +119,17 @@ def first_half(free, start, near, step, limits):
     bias = _turning(near, start, step)
     bias[0] += np.maximum(contacts.separation, 0.0) / step
     slip = _slip(near.rows.components(across).reshape(3, -1), closed, limits.slide_speed)
-    struck, impulse = near.struck(kicked, which, FIRST, bias, slip)
+    struck, impulse = near.struck(kicked, which, FIRST, step, bias, slip)
     return Trial(free, start, kicked, struck, step, near, impulse, across)
 
 
-def second_half(motion, near, which, half=SECOND):
+def second_half(motion, near, which, step, half=SECOND):
     """
-    Return (motion, impulses) at the end of a step, after those on its touching contacts (m,) int.
+    Return (motion, impulses) at the end of a step [s], after those on contacts (m,) that touch.
 
     The impulses are (3, k) [N s] in contact axes, or None.
     """
-    return near.struck(motion, which, half) if len(which) else (motion, None)
+    return near.struck(motion, which, half, step) if len(which) else (motion, None)
 
 
 def push_out(motion, near):

@@ -43,6 +43,10 @@ A step is halved until the residual is below the largest of the last four (Gripp
 Lucidi 1986), which breaks many circles; to go down always would get stuck more often.
 """
 
+_SLACK = 1e-2
+"""Of the free motion: a residual that is no reason to halve a step. It rises where who slides is
+found out, and half steps would only creep there."""
+
 _GAIN = 1e-3
 """A system is kept while it shrinks the residual to this part or less."""
 
@@ -58,7 +62,7 @@ _STALLED = 0.5
 _SETTLED = 1e-9
 """Of the free motion: residual at which the choice of forces is made."""
 
-_FEW_VALUES = 30
+_FEW_VALUES = 60
 """Up to so many plain floats are quicker."""
 
 _LADDERS = ((1e-2,), (1e-1, 1e-2, 1e-3, 1e-4))
@@ -186,7 +190,7 @@ class Newton:
                     self._prepare(self._equations.derivatives(*self._at))
                 sizes.append(size)
                 change = self._system.solve(residual)
-                largest = max(sizes[-_WINDOW:])
+                largest = max(_SLACK * self._scale, *sizes[-_WINDOW:])
                 for _ in range(_HALVINGS):
                     trial = force - change
                     residual, size = self._evaluate(free, trial)

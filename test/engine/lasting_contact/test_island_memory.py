@@ -25,20 +25,20 @@ from rigid_sim_ros.engine.shapes import Box, Cube
 
 
 def test_islands_take_over_the_impulses_of_their_own_pairs_only():
-    points, impulses = np.arange(18.0).reshape(2, 3, 3)
+    points, forces = np.arange(18.0).reshape(2, 3, 3)
     first = SimpleNamespace(
-        impulses={'first': ([(0, 5), (0, 5), (1, 0)], points, impulses)})
+        forces={'first': ([(0, 5), (0, 5), (1, 0)], points, forces)})
     second = SimpleNamespace(
-        impulses={'first': ([(2, 5)], np.full((3, 1), 6.0), np.full((3, 1), 7.0))})
+        forces={'first': ([(2, 5)], np.full((3, 1), 6.0), np.full((3, 1), 7.0))})
     islands = [first, second]
     # found anew many times, each made of both: memory that all took over would double each time
     for _ in range(40):
-        islands = [SimpleNamespace(impulses=memory_of(islands, *np.array(pairs).T))
+        islands = [SimpleNamespace(forces=memory_of(islands, *np.array(pairs).T))
                    for pairs in ([(0, 5), (0, 1)], [(2, 5)])]
-    pairs, *columns = islands[0].impulses['first']
+    pairs, *columns = islands[0].forces['first']
     assert pairs == [(0, 5), (0, 5), (1, 0)]
-    np.testing.assert_array_equal(columns, (points, impulses))
-    pairs, *columns = islands[1].impulses['first']
+    np.testing.assert_array_equal(columns, (points, forces))
+    pairs, *columns = islands[1].forces['first']
     assert pairs == [(2, 5)]
     np.testing.assert_array_equal(columns, [np.full((3, 1), value) for value in (6.0, 7.0)])
 
