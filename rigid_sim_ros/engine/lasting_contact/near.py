@@ -159,8 +159,10 @@ class Near:
         # with all that has been worked out
         near = copy(self)
         near.position, near.orientation = motion.position, motion.orientation
-        near.contacts = replace(self.contacts, separation=self.contacts.separation + rotation.dot(
-            self.contacts.normal, self.rows.across(linear, angular)))
+        if self.count:
+            near.contacts = replace(
+                self.contacts, separation=self.contacts.separation + rotation.dot(
+                    self.contacts.normal, self.rows.across(linear, angular)))
         return near
 
     def _resisted(self, motion, impulse):

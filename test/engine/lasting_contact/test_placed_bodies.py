@@ -72,3 +72,22 @@ def test_a_body_put_into_the_ground_among_others_comes_out(depth):
     simulation.set_pose('cube_4', position=(4 * EDGE, 0, EDGE / 2 - depth))
     simulation.advance(1.0)
     assert simulation.penetration() < 1e-3 * EDGE
+
+
+@pytest.mark.parametrize('rolling_friction', [0.0, 0.01])
+@pytest.mark.parametrize('orientation', [(0, 0, 0, 1), (0.1, 0.2, 0.3, 0.9)])
+def test_a_body_put_under_the_ground_comes_out(orientation, rolling_friction):
+    """A cube with all its corners below the plane: it ends up on one of its faces."""
+    material = {'friction': 0.5, 'rolling_friction': rolling_friction}
+    scene = load_scene({
+        'material': material, 'planes': [{'name': 'ground', 'normal': [0, 0, 1]}],
+        'bodies': [{'name': 'cube_0', 'cube': {'edge': EDGE}, 'mass': 1.0,
+                    'position': [0, 0, EDGE / 2]}]})
+    simulation = Simulation(scene)
+    simulation.advance(1.0)
+    simulation.set_pose('cube_0', position=(0, 0, -0.5), orientation=orientation)
+    simulation.advance(2.0)
+    # in steps a gap counts as closed that is less than a fifth of one's fall, g h^2
+    closed = GRAVITY / 240 ** 2 / 5 if rolling_friction else 1e-9
+    assert simulation.position[0, 2] == pytest.approx(EDGE / 2, abs=closed)
+    assert simulation.asleep.all()

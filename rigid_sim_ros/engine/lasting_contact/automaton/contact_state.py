@@ -86,7 +86,7 @@ class ContactState:
     def __init__(self, body, state, scales, stick, surfaces, law):
         """See the class."""
         self.body = body
-        self.state = normalized(state)
+        self.state = body.raised(normalized(state), TOUCH * scales.length)
         self.time = 0.0
         self.hits = []
         self.scales = scales

@@ -117,6 +117,18 @@ class PlaneBody:
         return (level + s * (x * z - w * y) * a + s * (y * z + w * x) * b
                 + (1.0 - s * (x * x + y * y)) * c)
 
+    def raised(self, state, allowed):
+        """
+        Return a state with the lowest point on the plane if one is deeper than allowed [m].
+
+        Only somebody from outside puts a body there, and closed points cannot all stay closed
+        then: corners on the other side of the body may be below the plane too.
+        """
+        lowest = min(self.gaps(state))
+        if lowest >= -allowed:
+            return state
+        return [*state[:2], state[2] - lowest, *state[3:]]
+
     def velocities(self, state, arms):
         """Return the velocities [m/s] of points with these arms."""
         vx, vy, vz, wx, wy, wz = state[7:]
