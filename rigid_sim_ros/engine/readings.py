@@ -120,5 +120,5 @@ class Readings:
     def _rows(self, columns):
         """Return the moving bodies' columns of an array (c, n) as rows that cannot be written."""
         rows = columns[:, :self._world.bodies.moving_count].T
-        rows.flags.writeable = False
+        rows.setflags(False)  # not writeable; by `flags` it takes twice as long
         return rows

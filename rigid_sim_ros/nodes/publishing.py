@@ -189,11 +189,11 @@ class Publications:
         """
         if self._now() >= self._look_due:
             self.look()
-        recording = self._recording if to_recording and self._recording.active else None
+        wanted = self._recording.wanted if to_recording else ()
         self._source.shared = {}
         for publication in self._occasions.get(when, ()):
             heard = to_subscribers and publication.heard
-            recorded = recording is not None and recording.wants(publication.row)
+            recorded = publication.row.name in wanted
             if heard or recorded:
                 publication.send(time, heard, recorded)
         self._source.shared = None

@@ -107,9 +107,10 @@ class Recording:
         return True, (f'recorded {state.message_count} messages, '
                       f'{state.byte_count / 1e6:.1f} MB{lost}, to {state.path}')
 
-    def wants(self, row):
-        """Tell whether messages of a row of `PUBLISHED` are recorded now."""
-        return self._recorder is not None and row.name in self._recorded and self.active
+    @property
+    def wanted(self):
+        """Return the names of the rows of `PUBLISHED` whose messages are recorded now."""
+        return self._recorded if self.active else frozenset()
 
     def write(self, name, time, data):
         """Record a message of a topic, named as in `topics`, at simulated time `time` [ns]."""

@@ -14,6 +14,7 @@
 
 """Messages on their way into an MCAP file: records in one stretch of memory."""
 
+from collections import defaultdict
 import struct
 
 from mcap.opcode import Opcode
@@ -46,29 +47,26 @@ class Chunk:
 
         self._data[:self.size] = declarations
         # times [ns] and offsets of the messages of each channel, in turn
-        self._entries = {}
+        self._entries = defaultdict(list)
 
         self.message_count = 0
         self.start_ns = self.end_ns = 0
         """Times of the earliest and of the latest message [ns]."""
 
     def add(self, channel, sequence, time_ns, data):
-        """Add a message on a channel, with its number and time [ns]."""
-        size = self.size
+        """Add a message on a channel, with its number and time [ns]; return the bytes it takes."""
+        size, length = self.size, len(data)
         start = size + _MESSAGE.size
-        end = start + len(data)
+        end = start + length
         if end > len(self._data):
             grown = memoryview(bytearray(2 * end))
             grown[:size] = self._data[:size]
             self._data = grown
-        _MESSAGE.pack_into(self._data, size, Opcode.MESSAGE, _MESSAGE_FIELDS + len(data), channel,
+        _MESSAGE.pack_into(self._data, size, Opcode.MESSAGE, _MESSAGE_FIELDS + length, channel,
                            sequence, time_ns, time_ns)
         self._data[start:end] = data
         self.size = end
-        entries = self._entries.get(channel)
-        if entries is None:
-            entries = self._entries[channel] = []
-        entries += time_ns, size
+        self._entries[channel] += time_ns, size
         if not self.message_count:
             self.start_ns = self.end_ns = time_ns
         elif time_ns > self.end_ns:
@@ -76,6 +74,7 @@ class Chunk:
         elif time_ns < self.start_ns:
             self.start_ns = time_ns
         self.message_count += 1
+        return end - size
 
     @property
     def capacity(self):

@@ -14,7 +14,7 @@
 
 """Puts the messages of a bag into chunks, and decides where its files begin."""
 
-from collections import deque
+from collections import defaultdict, deque
 
 from rigid_sim_ros.recording.chunk import Chunk, CHUNK_BYTES
 
@@ -28,8 +28,8 @@ class PackedChunk(Chunk):
     file_number = 0
     """The file of the bag it goes into, from 0."""
 
-    message_bytes = 0
-    """Bytes of its messages alone."""
+    head_bytes = 0
+    """Bytes in it that are no message."""
 
 
 class Packing:
@@ -56,6 +56,7 @@ class Packing:
         self._latched_channels, self._declarations = latched, declarations
         self._head_bytes = head_bytes
         self._max_bytes, self._max_ns = max_bytes, max_ns
+        self._is_limited = max_bytes > 0 or max_ns > 0
         self._latched = {}
         self._start_ns = self._last_ns = None
         self.message_count = self.byte_count = 0
@@ -76,13 +77,8 @@ class Packing:
         """
         if self._start_ns is None:
             self._start_ns = time_ns
-        elif self._must_split(time_ns):
-            self.close_chunk()
-            self._begin_file()
-            self._start_ns = time_ns
-            for latched, latched_data in self._latched.items():
-                if latched != channel:
-                    self._append(latched, time_ns, latched_data)
+        elif time_ns < self._last_ns or self._is_limited and self._is_full(time_ns):
+            self._begin_next_file(channel, time_ns)
         self._last_ns = time_ns
         self._append(channel, time_ns, data)
         if channel in self._latched_channels:
@@ -94,6 +90,7 @@ class Packing:
         """Close the open chunk, if it holds a message."""
         if self._chunk.message_count:
             self.closed.append(self._chunk)
+            self._file_bytes += self._chunk.size
             self._begin_chunk()
 
     def take(self):
@@ -105,36 +102,40 @@ class Packing:
     def give_back(self, chunk, byte_count):
         """Take back a chunk that was written and made so many bytes of its file."""
         self.message_count -= chunk.message_count
-        self.byte_count -= chunk.message_bytes
+        self.byte_count -= chunk.size - chunk.head_bytes
         if chunk.file_number == self._file_number:
             self._file_bytes += byte_count - chunk.size
         if sum(spare.capacity for spare in self._spare) + chunk.capacity <= _MOST_SPARE_BYTES:
             self._spare.append(chunk)
 
-    def _must_split(self, time_ns):
-        return (time_ns < self._last_ns
-                or 0 < self._max_ns <= time_ns - self._start_ns
-                or 0 < self._max_bytes <= self._file_bytes)
+    def _is_full(self, time_ns):
+        return (0 < self._max_ns <= time_ns - self._start_ns
+                or 0 < self._max_bytes <= self._file_bytes + self._chunk.size)
+
+    def _begin_next_file(self, channel, time_ns):
+        """Begin a file for a message on a channel, and for what is latched on all others."""
+        self.close_chunk()
+        self._begin_file()
+        self._start_ns = time_ns
+        for latched, data in self._latched.items():
+            if latched != channel:
+                self._append(latched, time_ns, data)
 
     def _begin_file(self):
         self._file_number += 1
-        self._sequences = {}
-        self._file_bytes = self._head_bytes + len(self._declarations)
+        self._sequences = defaultdict(int)
+        # without the open chunk
+        self._file_bytes = self._head_bytes
         self._begin_chunk(self._declarations)
 
     def _begin_chunk(self, declarations=b''):
         self._chunk = self._spare.pop() if self._spare else PackedChunk()
         self._chunk.clear(declarations)
-        self._chunk.message_bytes = 0
+        self._chunk.head_bytes = len(declarations)
         self._chunk.file_number = self._file_number
 
     def _append(self, channel, time_ns, data):
-        chunk, sequence = self._chunk, self._sequences.get(channel, 0)
-        self._sequences[channel] = sequence + 1
-        before = chunk.size
-        chunk.add(channel, sequence, time_ns, data)
-        added = chunk.size - before
-        self._file_bytes += added
-        self.byte_count += added
-        chunk.message_bytes += added
+        sequences = self._sequences
+        self.byte_count += self._chunk.add(channel, sequences[channel], time_ns, data)
         self.message_count += 1
+        sequences[channel] += 1

@@ -26,7 +26,7 @@ readable; whoever writes goes on.
 from dataclasses import dataclass
 import json
 import os
-from threading import Condition, Thread
+from threading import Condition, RLock, Thread
 from time import monotonic
 
 from rigid_sim_ros.recording.bag_metadata import bag_topic
@@ -128,7 +128,8 @@ class Recorder:
         self._chunk_seconds = chunk_seconds
         self._queue_bytes, self._when_full = queue_bytes, when_full
         self._on_full, self._full = on_full, False
-        self._condition = Condition()
+        self._lock = RLock()  # is entered by a call of C, unlike the condition
+        self._condition = Condition(self._lock)
         self._dropped_count = 0
         self._due = None
         self._phase, self._error = RECORDING, ''
@@ -170,15 +171,17 @@ class Recorder:
         counted as dropped.
         """
         channel = self._channels[topic_name]
-        with self._condition:
-            if not self._has_room(len(data) + _MESSAGE_OVERHEAD):
+        with self._lock:
+            packing, size = self._packing, len(data) + _MESSAGE_OVERHEAD
+            if (packing.byte_count + size > self._queue_bytes or self._phase != RECORDING) and (
+                    not self._make_room(size)):
                 self._dropped_count += 1
                 return
-            self._packing.add(channel, time_ns, data)
+            packing.add(channel, time_ns, data)
             if self._due is None:
                 self._due = monotonic() + max(0.0, self._chunk_seconds - _MARGIN)
                 self._condition.notify_all()
-            elif self._packing.closed:
+            elif packing.closed:
                 self._condition.notify_all()
 
     def close(self):
@@ -199,11 +202,9 @@ class Recorder:
                        f'rigid_sim_recover {self.path} finishes the bag')
         return self.state()
 
-    def _has_room(self, size):
+    def _make_room(self, size):
         """Tell whether so many bytes can be taken, after waiting for it if that was asked for."""
         packing = self._packing
-        if not packing.byte_count:
-            self._full = False
         while self._phase == RECORDING and packing.byte_count + size > self._queue_bytes:
             if not self._full:
                 self._full = True
@@ -262,6 +263,7 @@ class Recorder:
                 byte_count = self._bag.write(chunk)
                 with self._condition:
                     self._packing.give_back(chunk, byte_count)
+                    self._full &= self._packing.byte_count > 0
                     self._condition.notify_all()
             self._bag.check()
             if is_due:
