@@ -200,6 +200,20 @@ def test_a_full_queue_drops_and_counts(tmp_path, run, monkeypatch):
     assert sum(map(len, times(tmp_path / 'bag').values())) == state.message_count
 
 
+def test_a_queue_that_is_full_again_is_told_again(tmp_path, run, monkeypatch):
+    told = []
+    with run.recorder(tmp_path / 'bag', queue_bytes=5000,
+                      on_full=lambda: told.append(1)) as recorder:
+        disk = Disk(monkeypatch)
+        for times_full in (1, 2):
+            disk.stall = 0.2
+            # each beyond the last: time that goes back would begin a file
+            run.write(recorder, 100 * times_full, 100 * times_full + 50)
+            assert len(told) == times_full
+            disk.stall = 0.0
+            wait_until(lambda: not recorder.state().queued_count)
+
+
 def test_a_full_queue_can_make_the_writer_wait_instead(tmp_path, run, monkeypatch):
     told = []
     recorder = run.recorder(tmp_path / 'bag', queue_bytes=5000, when_full=recording.WAIT,
