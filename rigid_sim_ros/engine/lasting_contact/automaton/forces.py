@@ -117,20 +117,8 @@ def _guessed(body, turn, arms, free, slips):
         return None
     else:
         columns, rows = _point_columns(body, arms, slips)
-    m = body.inverse_mass
     matrix = []
-    motions = []
-    for column in columns:
-        fx = fy = fz = tx = ty = tz = 0.0
-        for point, (x, y, z) in column:
-            r = arms[point]
-            fx += x
-            fy += y
-            fz += z
-            tx += r[1] * z - r[2] * y
-            ty += r[2] * x - r[0] * z
-            tz += r[0] * y - r[1] * x
-        motions.append((m * fx, m * fy, m * fz, *body.turned(turn, (tx, ty, tz))))
+    motions = [_motion_by(body, turn, arms, column) for column in columns]
     for point, axis in rows:
         r, e = arms[point], axis
         t = cross(r, e)
@@ -147,6 +135,21 @@ def _guessed(body, turn, arms, free, slips):
             force[1] += size * direction[1]
             force[2] += size * direction[2]
     return forces
+
+
+def _motion_by(body, turn, arms, column):
+    """Return the linear and angular acceleration (6,) due to forces (3,) at points."""
+    fx = fy = fz = tx = ty = tz = 0.0
+    for point, (x, y, z) in column:
+        r = arms[point]
+        fx += x
+        fy += y
+        fz += z
+        tx += r[1] * z - r[2] * y
+        ty += r[2] * x - r[0] * z
+        tz += r[0] * y - r[1] * x
+    m = body.inverse_mass
+    return m * fx, m * fy, m * fz, *body.turned(turn, (tx, ty, tz))
 
 
 def _point_columns(body, arms, slips):

@@ -51,19 +51,7 @@ def constrained(body, state, turn, points, arms, slips, linear, angular):
         The accelerations without contact.
 
     """
-    count = len(points)
-    found = None
-    if None not in slips:
-        form = _sliding_points if count < 3 else _sliding_face
-        found = form(body, state, turn, arms, slips, linear, angular)
-    elif count == 1:
-        free = body.accelerations(state, arms, linear, angular)
-        found = (one_point(body, turn, arms[0], free[0], None),), None, None
-    elif slips == [None] * count:
-        if count > 2:
-            found = _sticking_face(body, state, turn, arms, linear, angular)
-        elif _is_edge(body, points):
-            found = _sticking_edge(body, state, turn, arms, linear, angular)
+    found = _in_closed_form(body, state, turn, points, arms, slips, linear, angular)
     if found is None:
         free = body.accelerations(state, arms, linear, angular)
         found = contact_forces(body, turn, arms, free, slips), None, None
@@ -73,6 +61,23 @@ def constrained(body, state, turn, points, arms, slips, linear, angular):
         acceleration = [a + b for a, b in zip(linear, added[0])]
         turning = [a + b for a, b in zip(angular, added[1])]
     return forces, acceleration, turning
+
+
+def _in_closed_form(body, state, turn, points, arms, slips, linear, angular):
+    """Return what `constrained` does, or None; no accelerations if they are those of forces."""
+    count = len(points)
+    if None not in slips:
+        form = _sliding_points if count < 3 else _sliding_face
+        return form(body, state, turn, arms, slips, linear, angular)
+    if count == 1:
+        free = body.accelerations(state, arms, linear, angular)
+        return (one_point(body, turn, arms[0], free[0], None),), None, None
+    if slips == [None] * count:
+        if count > 2:
+            return _sticking_face(body, state, turn, arms, linear, angular)
+        if _is_edge(body, points):
+            return _sticking_edge(body, state, turn, arms, linear, angular)
+    return None
 
 
 def _is_edge(body, points):
@@ -170,24 +175,9 @@ def _sliding_points(body, state, turn, arms, slips, linear, angular):
         u, v = -friction * u, -friction * v
         sliding.append((u, v))
         turnings.append(body.turned(turn, (y - z * v, z * u - x, x * v - y * u)))
-    x, y, _ = arms[0]
-    a = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
-    if len(arms) == 1:
-        if a < LEAST_RESPONSE * MOST_RESPONSE * inverse_mass:
-            return None
-        normals = max(-free[0] / a, 0.0),
-    else:
-        b = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
-        x, y, _ = arms[1]
-        c = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
-        d = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
-        determinant = a * d - b * c
-        if determinant <= 0.0:
-            return None
-        normals = (b * free[1] - d * free[0]) / determinant, (
-            c * free[0] - a * free[1]) / determinant
-        if min(normals) < 0.0:
-            return None
+    normals = _normals(inverse_mass, arms, free, turnings)
+    if normals is None:
+        return None
     ax, ay, az = linear
     forces = []
     for normal, (u, v), (i, j, k) in zip(normals, sliding, turnings):
@@ -202,6 +192,26 @@ def _sliding_points(body, state, turn, arms, slips, linear, angular):
     return forces, (ax, ay, az), (p, q, r)
 
 
+def _normals(inverse_mass, arms, free, turnings):
+    """Return the normal forces that hold one or two points with such turning each, or None."""
+    x, y, _ = arms[0]
+    a = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
+    if len(arms) == 1:
+        if a < LEAST_RESPONSE * MOST_RESPONSE * inverse_mass:
+            return None
+        return max(-free[0] / a, 0.0),
+    b = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
+    x, y, _ = arms[1]
+    c = inverse_mass + turnings[0][0] * y - turnings[0][1] * x
+    d = inverse_mass + turnings[1][0] * y - turnings[1][1] * x
+    determinant = a * d - b * c
+    if determinant <= 0.0:
+        return None
+    normals = (b * free[1] - d * free[0]) / determinant, (
+        c * free[0] - a * free[1]) / determinant
+    return None if min(normals) < 0.0 else normals
+
+
 def _sliding_face(body, _state, turn, arms, slips, linear, angular):
     """
     Return (forces, linear, angular acceleration) of a sliding face's corners, or None.
@@ -209,36 +219,13 @@ def _sliding_face(body, _state, turn, arms, slips, linear, angular):
     It moves in the plane: no acceleration along the normal, no turning but about it, which is a
     principal axis.
     """
-    mass = 1.0 / body.inverse_mass
     friction = body.friction
-    weight = -mass * linear[2]
     tx, ty, _ = _torque(body, turn, (0.0, 0.0, angular[2]), angular)
-    height = -arms[0][2]
-    # moments of the pressure c0 + c1 x + c2 y and of its friction; unknowns c0, c1, c2
-    n0 = n1 = n2 = n11 = n12 = n22 = u0 = u1 = u2 = v0 = v1 = v2 = 0.0
-    for (x, y, _), (u, v) in zip(arms, slips):
-        n0 += 1.0
-        n1 += x
-        n2 += y
-        n11 += x * x
-        n12 += x * y
-        n22 += y * y
-        u0 += u
-        u1 += u * x
-        u2 += u * y
-        v0 += v
-        v1 += v * x
-        v2 += v * y
-    drag = friction * height
-    a1, b1, d1 = n2 - drag * v0, n12 - drag * v1, n22 - drag * v2
-    a2, b2, d2 = drag * u0 - n1, drag * u1 - n11, drag * u2 - n12
-    m0, m1, m2 = b1 * d2 - d1 * b2, d1 * a2 - a1 * d2, a1 * b2 - b1 * a2
-    determinant = n0 * m0 + n1 * m1 + n2 * m2
-    if determinant == 0.0:
+    pressure = _pressure(arms, slips, -friction * arms[0][2], -linear[2] / body.inverse_mass,
+                         tx, ty)
+    if pressure is None:
         return None
-    c0 = (weight * m0 + n1 * (d1 * ty - tx * d2) + n2 * (tx * b2 - b1 * ty)) / determinant
-    c1 = (n0 * (tx * d2 - d1 * ty) + weight * m1 + n2 * (a1 * ty - tx * a2)) / determinant
-    c2 = (n0 * (b1 * ty - tx * b2) + n1 * (tx * a2 - a1 * ty) + weight * m2) / determinant
+    c0, c1, c2 = pressure
     forces = []
     fx = fy = tz = 0.0
     for (x, y, _), (u, v) in zip(arms, slips):
@@ -254,3 +241,37 @@ def _sliding_face(body, _state, turn, arms, slips, linear, angular):
     inverse_mass = body.inverse_mass
     return (forces, (linear[0] + inverse_mass * fx, linear[1] + inverse_mass * fy, 0.0),
             (0.0, 0.0, angular[2] + turning))
+
+
+def _pressure(arms, slips, drag, weight, tx, ty):
+    """
+    Return (c0, c1, c2) of the pressure c0 + c1 x + c2 y of sliding corners, or None.
+
+    It carries a weight [N] and a torque [N m] across the normal; drag [m] is the friction
+    coefficient times the height of the centre.
+    """
+    # moments of the pressure and of its friction
+    n0 = n1 = n2 = n11 = n12 = n22 = u0 = u1 = u2 = v0 = v1 = v2 = 0.0
+    for (x, y, _), (u, v) in zip(arms, slips):
+        n0 += 1.0
+        n1 += x
+        n2 += y
+        n11 += x * x
+        n12 += x * y
+        n22 += y * y
+        u0 += u
+        u1 += u * x
+        u2 += u * y
+        v0 += v
+        v1 += v * x
+        v2 += v * y
+    a1, b1, d1 = n2 - drag * v0, n12 - drag * v1, n22 - drag * v2
+    a2, b2, d2 = drag * u0 - n1, drag * u1 - n11, drag * u2 - n12
+    m0, m1, m2 = b1 * d2 - d1 * b2, d1 * a2 - a1 * d2, a1 * b2 - b1 * a2
+    determinant = n0 * m0 + n1 * m1 + n2 * m2
+    if determinant == 0.0:
+        return None
+    e0, e1, e2 = tx * b2 - b1 * ty, tx * d2 - d1 * ty, tx * a2 - a1 * ty
+    return ((weight * m0 - n1 * e1 + n2 * e0) / determinant,
+            (n0 * e1 + weight * m1 - n2 * e2) / determinant,
+            (-n0 * e0 + n1 * e2 + weight * m2) / determinant)
