@@ -98,6 +98,8 @@ class FreeMotion:
         """(n,) [kg], zero of what does not move."""
         self._inertia = bodies.inertia
         self._inverse_inertia = bodies.inverse_inertia
+        self._turns = []
+        """The attitudes that were asked for last, and their rotation matrices."""
         moments = bodies.inertia[:, :bodies.moving_count]
         self._plain = bool((moments == moments[0]).all()) and not torque.any()
 
@@ -105,7 +107,7 @@ class FreeMotion:
         """Return what torques and the gyroscopic term give, (3, n) [rad/s^2], world axes."""
         if self._plain:
             return np.zeros_like(motion.angular)
-        turn = rotation.matrix(motion.orientation)
+        turn = self._turn(motion.orientation)
         rate = rotation.transform_transposed(turn, motion.angular)
         torque = (rotation.transform_transposed(turn, self.torque)
                   - rotation.cross(rate, self._inertia * rate))
@@ -115,7 +117,7 @@ class FreeMotion:
         """Return the kinetic energies (n,) [J], zero of what does not move."""
         rate = motion.angular
         if not self._plain:
-            rate = rotation.transform_transposed(rotation.matrix(motion.orientation), rate)
+            rate = rotation.transform_transposed(self._turn(motion.orientation), rate)
         return 0.5 * (self.mass * rotation.dot(motion.linear, motion.linear)
                       + rotation.dot(self._inertia * rate, rate))
 
@@ -134,7 +136,7 @@ class FreeMotion:
         """Return what the held torques alone change rates (3, n) [rad/s] by in a time [s]."""
         if not self.torque.any():
             return np.zeros_like(motion.angular)
-        turn = rotation.matrix(motion.orientation)
+        turn = self._turn(motion.orientation)
         return time * rotation.transform(turn, self._inverse_inertia * (
             rotation.transform_transposed(turn, self.torque)))
 
@@ -181,8 +183,17 @@ class FreeMotion:
             passing.angular - 0.5 * (kicked.angular - start.angular))
         orientation = turned(start.orientation, on_the_way, self._inertia, self._inverse_inertia,
                              self.torque, time)
-        before, after = rotation.matrix(start.orientation), rotation.matrix(orientation)
+        before, after = self._turn(start.orientation), self._turn(orientation)
         momentum = rotation.transform(before, self._inertia * rotation.transform_transposed(
             before, given)) + time * self.torque
         return orientation, rotation.transform(
             after, self._inverse_inertia * rotation.transform_transposed(after, momentum))
+
+    def _turn(self, orientation):
+        """Return the rotation matrices of attitudes (4, n), which nobody writes into."""
+        for known, turn in self._turns:
+            if known is orientation:
+                return turn
+        turn = rotation.matrix(orientation)
+        self._turns = [(orientation, turn), *self._turns[:2]]
+        return turn

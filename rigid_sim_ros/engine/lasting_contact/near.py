@@ -200,10 +200,11 @@ class Near:
         rows = np.concatenate((group, group + count, group + 2 * count))
         response = self._response
         if len(group) < count:
-            response = response[rows[:, None], rows]
+            response = response.take(rows, axis=0).take(rows, axis=1)
         problem = ContactProblem(
-            response, free[:, group].ravel(), self._friction[group], np.zeros(len(group)),
-            np.zeros((2, len(group))) if slip is None else slip[:, group],
+            response, free.take(group, axis=1).ravel(), self._friction.take(group),
+            np.zeros(len(group)),
+            np.zeros((2, len(group))) if slip is None else slip.take(group, axis=1),
             self._factor(group, rows))
         if guess is not None:
             guess = guess[:, group].ravel()

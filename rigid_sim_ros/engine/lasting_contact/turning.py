@@ -51,10 +51,13 @@ def turned(orientation, rate, inertia, inverse_inertia, torque, time):
     count = max(1, ceil(sqrt(3.0) * fastest * time / STRIDE))
     stride = time / count
     momentum = _to_world(orientation, inertia * _to_body(orientation, rate))
+    pull = None
     for number in range(count):
         here = momentum + number * stride * torque
         body_rate = inverse_inertia * _to_body(orientation, here)
-        series = _derivatives(body_rate, inertia, inverse_inertia, _to_body(orientation, torque))
+        if torque.any():
+            pull = _to_body(orientation, torque)
+        series = _derivatives(body_rate, inertia, inverse_inertia, pull)
         first, second = (body_rate + _polynomial(series, node * stride) for node in _NODES)
         vector = 0.5 * stride * (first + second) + (
             sqrt(3.0) / 12.0 * stride * stride) * rotation.cross(first, second)
@@ -64,17 +67,27 @@ def turned(orientation, rate, inertia, inverse_inertia, torque, time):
 
 
 def _derivatives(rate, inertia, inverse_inertia, torque):
-    """Return the first three derivatives (3, n) of body rates (3, n), torques in body axes."""
+    """
+    Return the first three derivatives (3, n) of body rates (3, n).
+
+    Torques (3, n) are in body axes, or None.
+    """
     cross = rotation.cross
-    spin, pull = inertia * rate, -cross(rate, torque)
-    first_change = cross(spin, rate) + torque
+    spin = inertia * rate
+    first_change = cross(spin, rate)
+    if torque is not None:
+        first_change += torque
     first = inverse_inertia * first_change
-    second_change = cross(first_change, rate) + cross(spin, first) + pull
+    second_change = cross(first_change, rate) + cross(spin, first)
+    if torque is not None:
+        pull = -cross(rate, torque)
+        second_change += pull
     second = inverse_inertia * second_change
-    third = inverse_inertia * (
-        cross(second_change, rate) + 2.0 * cross(first_change, first) + cross(spin, second)
-        - cross(first, torque) - cross(rate, pull))
-    return first, second, third
+    third_change = (cross(second_change, rate) + 2.0 * cross(first_change, first)
+                    + cross(spin, second))
+    if torque is not None:
+        third_change -= cross(first, torque) + cross(rate, pull)
+    return first, second, inverse_inertia * third_change
 
 
 def _polynomial(series, time):
