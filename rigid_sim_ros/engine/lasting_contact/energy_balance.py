@@ -101,7 +101,10 @@ class Group(NamedTuple):
     """(3, w): the normals of what is fixed that they press on."""
 
     slip: float
-    """[m/s]: how fast contacts slide, or part, on the average of their normal forces."""
+    """
+    [m/s]: how fast contacts slide, or part, on the average of the normal forces on a body; of the
+    body with which that is most. Light ones slide on heavy ones that stick.
+    """
 
 
 def balanced(ending, slide_speed, carry=True):
@@ -157,9 +160,18 @@ def _groups(ending):
             any(bodies.friction.item(a) > 0 and bodies.friction.item(b) > 0
                 for a, b in (pairs[place] for place in walls)),
             np.array([normals[place] for place in walls]).reshape(-1, 3).T,
-            sum(forces[place] * slips[place] for place in places)
-            / sum(forces[place] for place in places)))
+            _slip([(body, forces[place], slips[place]) for place in places
+                   for body in pairs[place] if body < count])))
     return result
+
+
+def _slip(touches):
+    """Return the `slip` of a `Group` of (body, normal force, speed across) of its contacts."""
+    force, flow = {}, {}
+    for body, normal, speed in touches:
+        force[body] = force.get(body, 0.0) + normal
+        flow[body] = flow.get(body, 0.0) + normal * speed
+    return max(flow[body] / force[body] for body in force)
 
 
 def _carried(ending, members):

@@ -23,6 +23,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.solvers import canonical
 from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones, largest_eigenvalue
+from rigid_sim_ros.engine.solvers.balance import balanced, restored, scales_of
 from rigid_sim_ros.engine.solvers.frictionless import solve_frictionless
 from rigid_sim_ros.engine.solvers.newton import solve_newton
 from rigid_sim_ros.engine.solvers.problem import ContactProblem, Solution
@@ -47,6 +48,15 @@ def solve(problem, guess=None, accuracy=canonical.ACCURACY):
     """
     if problem.count == 1 and (solution := _solve_one(problem)) is not None:
         return solution
+    scales = scales_of(problem)
+    if scales is None:
+        return _solve_many(problem, guess, accuracy)
+    guess = None if guess is None else guess / scales
+    return restored(_solve_many(balanced(problem, scales), guess, accuracy), scales)
+
+
+def _solve_many(problem, guess, accuracy):
+    """Return the `Solution` of a problem of several contacts whose responses are alike."""
     if not problem.friction.any():
         solution = solve_frictionless(problem, accuracy)
         if solution is not None:
