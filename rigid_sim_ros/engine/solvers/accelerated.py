@@ -29,7 +29,7 @@ import numpy as np
 _TINY = 1e-60
 """Of a force: nothing, and its square is no denormal number, which would be slow."""
 
-_SHORTER = 0.9
+SHORTER = 0.9
 """Of the longest step that a change would have allowed."""
 
 _TESTED = 4
@@ -52,7 +52,7 @@ class Cones:
         """See the class."""
         self._friction = friction
         # a normal force that is never quite zero needs no guard in a division
-        self._floor = np.maximum(floor, _TINY)
+        self._floor = np.maximum(np.broadcast_to(floor, friction.shape), _TINY)
         self._length = np.empty_like(friction)
         self._square = np.empty_like(friction)
 
@@ -73,10 +73,19 @@ class Cones:
         first *= square
         second *= square
 
+    def select(self, kept):
+        """Return those of some contacts (k,) bool."""
+        return Cones(self._friction[kept], self._floor[kept])
+
+
+def is_tested(iteration):
+    """Return whether convergence is tested at an iteration, the first of which is 1."""
+    return iteration <= 2 or iteration % _TESTED == 0
+
 
 def accelerated(response, step, cones, free, force, tolerance, iterations):
     """
-    Return (force, iterations used, residual): an approximate solution of a contact problem.
+    Return (force, iterations used, residual (n,)): an approximate solution of a contact problem.
 
     Parameters
     ----------
@@ -100,20 +109,20 @@ def accelerated(response, step, cones, free, force, tolerance, iterations):
     cones.project(here)
     ahead = here
     made_here = made_ahead = response(here)
-    theta, residual = 1.0, np.inf
+    theta = 1.0
     for iteration in range(1, iterations + 1):
         there = ahead - step * (made_ahead + free)
         cones.project(there)
         change = there - ahead
-        if iteration <= 2 or iteration % _TESTED == 0 or iteration == iterations:
-            residual = float(np.abs(change).max(initial=0.0)) / step
-            if residual <= tolerance:
+        if is_tested(iteration) or iteration == iterations:
+            residual = np.abs(change) / step
+            if residual.max(initial=0.0) <= tolerance:
                 break
         made_there = response(there)
         size, curvature = change @ change, change @ (made_there - made_ahead)
         if 0.0 < size < curvature * step:
             # the step is longer than the response allows: back, and on with a shorter one
-            step = _SHORTER * size / curvature
+            step = SHORTER * size / curvature
             theta = 1.0
             ahead, made_ahead = here, made_here
             continue

@@ -34,8 +34,8 @@ class Block:
 
     Parameters
     ----------
-    bodies : (p, 2) int
-        Slots of the two bodies; what does not move has the last slot of all.
+    slots : (p, 2) int
+        Of the two bodies; what does not move has the last slot of all.
     rows : (p, 3c, 12)
         J M^-1/2: c normals, c first, c second tangents; six columns for either body.
     start : int
@@ -43,12 +43,13 @@ class Block:
 
     """
 
-    def __init__(self, bodies, rows, start):
+    def __init__(self, slots, rows, start):
         """See the class."""
         pairs, count = rows.shape[0], rows.shape[1] // 3
         self.part = slice(start, start + pairs * count)
         self.shape = pairs, count
-        self.places = (6 * bodies[:, :, None] + np.arange(6)).reshape(pairs, 12)
+        self.slots = slots
+        self.places = (6 * slots[:, :, None] + np.arange(6)).reshape(pairs, 12)
         self.flat_places = self.places.ravel()
         self.rows = np.ascontiguousarray(rows)
         self.work = np.empty((pairs, 3 * count))
@@ -71,6 +72,17 @@ class BlockRows:
         self._blocks = blocks
         self.size = 6 * slots
         self.count = sum(block.shape[0] * block.shape[1] for block in blocks)
+
+    def select(self, kept):
+        """Return the rows of some contacts (k,) bool: of a pair all or none."""
+        blocks, start = [], 0
+        for block in self._blocks:
+            pairs, count = block.shape
+            of_pair = kept[block.part].reshape(pairs, count)[:, 0]
+            if of_pair.any():
+                blocks.append(Block(block.slots[of_pair], block.rows[of_pair], start))
+                start = blocks[-1].part.stop
+        return BlockRows(blocks, self.size // 6)
 
     def motion(self, velocity):
         """Return how all rows move, (3k,), for scaled velocities, flat (6 slots,)."""

@@ -253,12 +253,12 @@ def test_what_quiet_steps_leave_is_there_for_others():
     """Iterations: saved up to a limit, spent down to none, handed on to the next pile."""
     budget = Budget([])
     assert budget.saved == SAVED
-    budget.spend(SAVED + 100, 60)
+    budget.spend(np.array((10, SAVED + 100)), np.array((60, 60)))
     assert budget.saved == 0
-    budget.spend(10, 60)
+    budget.spend(np.array((10,)), np.array((60,)))
     assert budget.saved == 50
     assert Budget([budget, Budget([budget])]).saved == 50
-    budget.spend(0, 2 * SAVED)
+    budget.spend(np.array((0,)), np.array((2 * SAVED,)))
     assert budget.saved == SAVED
 
 

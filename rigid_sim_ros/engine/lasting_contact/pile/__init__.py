@@ -41,7 +41,6 @@ from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.lasting_contact.pile.pile_step import (
     HIT_ROUNDS, NEVER, OVERLAP, PileStep)
 from rigid_sim_ros.engine.lasting_contact.stepping import parts_of
-from rigid_sim_ros.engine.solvers.accelerated import accelerated
 
 PUSH_ITERATIONS = 15
 """Of the solver to push overlaps out, at most; the rest is left to the next time."""
@@ -211,8 +210,7 @@ class Pile:
         allowed = PUSHED / 3 * scales.length
         rows = np.zeros((3, len(contacts.gap)))
         rows[0] = contacts.gap + allowed
-        force, _, _ = accelerated(
-            contacts.rows.response, contacts.step, contacts.without_friction(),
+        force = contacts.frictionless(
             contacts.row_motion(rows, NEVER), np.zeros(3 * contacts.rows.count), 0.3 * allowed,
             PUSH_ITERATIONS)
         count = island.member_count

@@ -37,5 +37,5 @@ class Budget:
         """Iterations left over so far."""
 
     def spend(self, used, share):
-        """Note that a solution with a fair share of iterations has used so many."""
-        self.saved = min(max(0, self.saved + share - used), SAVED)
+        """Note that groups have used so many iterations (g,), of a fair share (g,)."""
+        self.saved = min(max(0, self.saved + int((share - used).min())), SAVED)

@@ -18,13 +18,26 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
+from rigid_sim_ros.engine.graph import alike, group_numbers
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import newton_forces
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import DenseRows, PointRows
-from rigid_sim_ros.engine.solvers.accelerated import Cones, largest_eigenvalue
+from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones
+from rigid_sim_ros.engine.solvers.accelerated_groups import (
+    accelerated_groups, largest_eigenvalues)
 from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows, MANY_PAIRS, POINTS
 from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
 
 DENSE = 500
 """Contact points times bodies up to which a dense response is quicker than blocks."""
+
+APART = 500
+"""Contacts from which on the gradient takes each group by itself: fewer are quicker together."""
+
+FIRST_ITERATIONS, FIRST_OF_FEW = 40, 100
+"""Of the gradient, before Newton's method is tried; of few contacts they are cheap."""
+
+PARTING = 1e6
+"""Motion of contacts that cannot close in a step: they are not there."""
 
 _MARGIN = 1.15
 """What the estimate of the largest eigenvalue is raised by, to be a bound."""
@@ -74,30 +87,79 @@ class PileContacts:
         rows *= self._units[:, :, None, None]
         self.gap = contacts.separation
         self._bodies = bodies
-        slots = np.minimum(np.stack((a, b)), members)
+        self._scaled_rows, self._slots = rows, np.minimum(np.stack((a, b)), members)
         self._places = np.arange(len(a))
-        self.rows = self._rows(rows, slots, a * bodies.count + b)
+        few = len(a) * (members + 1) <= DENSE
+        self.groups = group_numbers(bodies, contacts)
+        """(k,) int: contacts that hang together, by what moves, have the same number."""
+        self.group_count = 1 + self.groups.max(initial=0).item()
+        self.body_groups = np.full(members + 1, self.group_count)
+        """(m + 1,) int: the same of the bodies that move; one more of what is in no group."""
+        self.body_groups[self._slots] = self.groups
+        self.body_groups[members] = self.group_count
+        self._apart = len(a) >= APART and self.group_count > 1
+        self._first = FIRST_OF_FEW if few else FIRST_ITERATIONS
+        self._point_groups = self.groups
+        self.rows = self._dense(rows, self._slots) if few else self._many(
+            rows, self._slots, a * bodies.count + b)
         self._friction = np.zeros(self.rows.count)
         self._friction[self._places] = (
             mixed_friction(bodies.friction[a], bodies.friction[b])
             * self._units[0] / self._units[1])
-        self.cones = Cones(self._friction)
-        self.vector, self.step = self._bound(vector)
+        self.vector, self._step = self._bound(vector)
 
-    def without_friction(self):
-        """Return `Cones` of the same contacts without friction."""
-        return Cones(np.zeros_like(self._friction))
+    def solved(self, free, forces, tolerance, iterations, thorough):
+        """
+        Return (forces by row, iterations used (g,)): an approximate solution, group by group.
 
-    def _rows(self, rows, slots, keys):
-        """Return rows (3, k, 2, 6) in the form that is quickest for so many."""
-        count = len(keys)
-        if count * (self._members + 1) <= DENSE:
-            return self._dense(rows, slots)
-        starts = np.flatnonzero(np.diff(keys, prepend=-1))
-        if len(starts) < MANY_PAIRS:
-            return PointRows(rows.reshape(3, count, 12).transpose(0, 2, 1), slots,
-                             self._members + 1)
-        return self._blocks(rows, slots, starts)
+        Of motion without forces, less what is asked for, and forces to start from, by row, to
+        tolerances (g,) of motion in at most so many iterations (g,). `thorough` groups (g,) bool
+        that the gradient does not solve at once are tried by Newton's method.
+        """
+        first = np.where(thorough, np.minimum(iterations, self._first), iterations)
+        forces, used, solved = self._by_gradient(free, forces, tolerance, first)
+        left = ~solved & thorough
+        if left.any():
+            used += self._by_newton(left, free, forces, tolerance)
+            rest = np.where(left, iterations - first, 0)
+            if rest.any():
+                forces, more, _ = self._by_gradient(free, forces, tolerance, rest)
+                used += more
+        return forces, used
+
+    def frictionless(self, free, forces, tolerance, iterations):
+        """Return forces by row as `solved` does, without friction, for one limit for all."""
+        return self._by_gradient(free, forces, np.full(self.group_count, tolerance),
+                                 np.full(self.group_count, iterations), friction=0.0)[0]
+
+    def _by_gradient(self, free, forces, tolerance, iterations, friction=1.0):
+        """Return (forces by row, iterations used (g,), which groups (g,) bool are solved)."""
+        cones = Cones(friction * self._friction)
+        if self._apart:
+            return accelerated_groups(self.rows, cones, self._point_groups, self._step, free,
+                                      forces, tolerance, iterations)
+        forces, used, residual = accelerated(
+            self.rows.response, self._step.item(), cones, free, forces,
+            tolerance[iterations > 0].max(), iterations.max())
+        left = np.zeros(self.group_count)
+        np.maximum.at(left, self._point_groups, residual.reshape(3, -1).max(axis=0))
+        return forces, np.full(self.group_count, used), left <= tolerance
+
+    def _by_newton(self, groups, free, forces, tolerance):
+        """Put the forces of groups (g,) bool into those by row; return iterations used (g,)."""
+        used = np.zeros(self.group_count, dtype=int)
+        may_close = free[self._places] < PARTING
+        for group, places in alike(np.where(groups[self.groups] & may_close, self.groups, -1)):
+            if group < 0:
+                continue
+            points = self._places[places]
+            found, used[group] = newton_forces(
+                self._scaled_rows[:, places], self._slots[:, places],
+                free.reshape(3, -1)[:, points], self._friction[points],
+                forces.reshape(3, -1)[:, points], tolerance[group])
+            if found is not None:
+                forces.reshape(3, -1)[:, points] = found.reshape(3, -1)
+        return used
 
     def _dense(self, rows, slots):
         """Return the rows as a matrix."""
@@ -110,10 +172,18 @@ class PileContacts:
         dense[:, :, -1] = 0.0
         return DenseRows(dense.reshape(3 * count, 6 * (self._members + 1)))
 
+    def _many(self, rows, slots, keys):
+        """Return rows (3, k, 2, 6) in the form that is quickest for so many pairs."""
+        starts = np.flatnonzero(np.diff(keys, prepend=-1))
+        if len(starts) < MANY_PAIRS:
+            return PointRows(rows.reshape(3, len(keys), 12).transpose(0, 2, 1), slots,
+                             self._members + 1)
+        return self._blocks(rows, slots, starts)
+
     def _blocks(self, rows, slots, starts):
         """Return the rows as blocks, and note which flat point each contact is."""
         sizes = np.diff(starts, append=slots.shape[1])
-        blocks, begin, low = [], 0, 0
+        blocks, groups, begin, low = [], [], 0, 0
         for room in POINTS:
             fits = np.flatnonzero((sizes > low) & (sizes <= room))
             low = room
@@ -126,18 +196,25 @@ class PileContacts:
             blocks.append(Block(slots[:, starts[fits]].T,
                                 taken.reshape(len(fits), 3 * room, 12), begin))
             self._places[contacts[real]] = begin + np.flatnonzero(real.ravel())
+            groups.append(np.repeat(self.groups[starts[fits]], room))
             begin += real.size
+        self._point_groups = np.concatenate(groups)
         return BlockRows(blocks, self._members + 1)
 
     def _bound(self, vector):
-        """Return the scaled velocities of the fastest motion, and a step for the solver."""
+        """Return the scaled velocities of the fastest motions, and steps (g,) for the solver."""
         rounds = _ROUNDS
         if vector is None or not vector.any():
             vector = np.random.default_rng(0).normal(size=6 * (self._members + 1))
             rounds += 7
-        largest, vector = largest_eigenvalue(
-            lambda velocity: self.rows.momentum(self.rows.motion(velocity)), vector, rounds)
-        return vector, 1 / (_MARGIN * largest) if largest > 0 else 1.0
+        groups, count = np.zeros(len(vector), dtype=int), 1
+        if self._apart:
+            groups, count = np.repeat(self.body_groups, 6), self.group_count + 1
+        largest, vector = largest_eigenvalues(
+            lambda velocity: self.rows.momentum(self.rows.motion(velocity)), vector, groups,
+            count, rounds)
+        largest = largest[:self.group_count]
+        return vector, 1 / (_MARGIN * np.where(largest > 0, largest, 1 / _MARGIN))
 
     # -- vectors by row --------------------------------------------------------------------------
 

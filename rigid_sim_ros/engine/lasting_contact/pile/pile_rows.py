@@ -71,11 +71,16 @@ class PointRows:
     def __init__(self, rows, slots, slot_count):
         """See the class."""
         self.count = rows.shape[2]
+        self._slots, self._slot_count = slots, slot_count
         self._size = 6 * slot_count
         self._rows = np.ascontiguousarray(rows)
         self._places = (6 * slots[:, None] + np.arange(6)[:, None]).reshape(12, self.count)
         self._flat_places = self._places.ravel()
         self._each = np.empty((12, self.count))
+
+    def select(self, kept):
+        """Return the rows of some contacts (k,) bool."""
+        return PointRows(self._rows[:, :, kept], self._slots[:, kept], self._slot_count)
 
     def motion(self, velocity):
         """Return how all rows move, (3k,), for scaled velocities, flat (6 slots,)."""

@@ -19,38 +19,14 @@ from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
-from rigid_sim_ros.engine.solvers.accelerated import accelerated
+from rigid_sim_ros.engine.lasting_contact.pile.solver_limits import ACCURACY, solver_limits
 from rigid_sim_ros.engine.spin_friction import Resistance
-
-ITERATIONS = 60, 1000
-"""
-A solution's fair share, of many contacts and of few; what the `Budget` has saved comes on top.
-What hardly moves needs a few, a row of 31 that is hit some 600, a pushed tower thousands.
-"""
-
-WORK = 500_000
-"""
-Iterations times contacts to the power of 3/2 in a fair share: that of few, and the fewest from
-some hundreds on, which are dear and hardly gain by more as long as they are disturbed each step.
-"""
-
-ACCURACY = 5e-8
-"""
-Of what the acceleration scale does to velocities in a step: where the solver stops. A row of 30
-that friction holds goes by a tenth of a nanometre until it does.
-"""
-
-HIT_ITERATIONS = 25, 1000
-"""The same share in a step in which something hits, and again as long as something sinks."""
 
 HIT_ROUNDS = 4
 """So many times at most; once where it is only to be seen what else is run into."""
 
 OVERLAP = 5e-4
 """Of the length scale: sinking in by more is worth more work."""
-
-HIT_ACCURACY = 1e-6
-"""Of the speed of what hits: where the solver stops then. A row goes on at a fraction of that."""
 
 SLACK = 1e-6
 """
@@ -127,15 +103,11 @@ class PileStep:
         self.hits = (self.speed < -limit) & (contacts.gap + duration * self.speed < 0)
         asked = np.zeros((3, len(self.speed)))
         slack = SLACK * self._scales.length
-        asked[0] = np.where(contacts.found.late, contacts.gap,
-                            np.maximum(contacts.gap - slack, 0.0)) / duration
-        tolerance = ACCURACY * self._scales.acceleration * duration
-        iterations = self._iterations(ITERATIONS)
-        if self.hits.any():
-            tolerance = HIT_ACCURACY * -float(self.speed.min())
-            iterations = self._iterations(HIT_ITERATIONS)
+        # what is closed is closed by more than need be, and asks for nothing the next time
+        early = np.where(contacts.gap > slack, contacts.gap - 0.5 * slack, 0.0)
+        asked[0] = np.where(contacts.found.late, contacts.gap, early) / duration
         for _ in range(rounds):
-            self.forces, change = self._solved(kicked, asked, self.forces, tolerance, iterations)
+            self.forces, change = self._solved(kicked, asked, self.forces)
             self.sinks = bool(self.hits.any()) and self._sinks(kicked + change)
             if not self.sinks:
                 break
@@ -228,9 +200,7 @@ class PileStep:
             self._island.bodies, contacts.found.carried(self._start, self.end),
             self.end.orientation, contacts.vector)
         velocity = self.contacts.scaled(self.end)
-        forces, change = self._solved(
-            velocity, asked, np.zeros(3 * self.contacts.rows.count),
-            HIT_ACCURACY * -float(self.speed.min()), self._iterations(HIT_ITERATIONS))
+        forces, change = self._solved(velocity, asked, np.zeros(3 * self.contacts.rows.count))
         part = rebound_part(velocity, change, self.lost)
         self.lost -= part * float(change @ velocity + 0.5 * part * (change @ change))
         self.end = self.end.struck(np.arange(self._island.member_count),
@@ -239,21 +209,17 @@ class PileStep:
         self.contacts = contacts
         return impulse
 
-    def _solved(self, velocity, asked, forces, tolerance, iterations):
+    def _solved(self, velocity, asked, forces):
         """Return (forces by row, the change of scaled velocities they make)."""
         contacts = self.contacts
-        forces, used, _ = accelerated(
-            contacts.rows.response, contacts.step, contacts.cones,
-            contacts.rows.motion(velocity) + contacts.row_motion(asked, NEVER), forces, tolerance,
-            iterations + self._budget.saved)
-        self._budget.spend(used, iterations)
-        self._island.world.work.solver_iterations += used
+        limits = solver_limits(self._island, self._scales, contacts, self._start, self._duration,
+                               np.where(self.hits, -self.speed, 0.0))
+        forces, used = contacts.solved(
+            contacts.rows.motion(velocity) + contacts.row_motion(asked, NEVER), forces,
+            limits.tolerance, limits.share + self._budget.saved, limits.thorough)
+        self._budget.spend(used, limits.share)
+        self._island.world.work.solver_iterations += int(used.max())
         return forces, contacts.rows.momentum(forces)
-
-    def _iterations(self, limits):
-        """Return how many iterations these contacts may take, within limits."""
-        fewest, most = limits
-        return min(max(fewest, int(WORK / max(1, len(self.speed)) ** 1.5)), most)
 
     def _resisted(self, linear, angular):
         """Return velocities (3, n) after friction against rolling and pivoting."""

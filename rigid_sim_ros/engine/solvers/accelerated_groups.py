@@ -1,0 +1,158 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The accelerated projected gradient for contacts in groups that have nothing to do with each other.
+
+Each group goes on with its own step, momentum and restarts, as if it were alone, and leaves when
+it is solved: what is left costs what it is. All are taken along in the same few products of NumPy.
+"""
+
+from itertools import count
+
+import numpy as np
+
+from rigid_sim_ros.engine.solvers.accelerated import is_tested, SHORTER
+
+LEFT_SHARE = 0.8
+"""Contacts of groups that are solved go along until no more than this part is left to solve."""
+
+
+def accelerated_groups(rows, cones, groups, step, free, force, tolerance, iterations):
+    """
+    Return (force, iterations used (g,), which groups (g,) bool are solved), as of `accelerated`.
+
+    Parameters
+    ----------
+    rows : object
+        `response(force)` gives the motion (3k,) made by forces (3k,), all normals, all first, all
+        second tangents; `select(kept)` the rows of some contacts (k,) bool, whole groups.
+    cones : object
+        `project(force)` draws forces back onto what is allowed, in place; `select(kept)`.
+    groups : (k,) int
+        The group of each contact, below g.
+    step : (g,)
+        About the reciprocals of the largest eigenvalues.
+    free, force : (3k,)
+        Motion without forces, less what is asked for; forces to start from.
+    tolerance : (g,)
+        Changes of motion in an iteration at which to stop.
+    iterations : (g,) int
+        At most, to the next at which convergence is tested; where it is none the force is left.
+
+    """
+    result, used = force.copy(), np.zeros(len(step), dtype=int)
+    solved = np.zeros(len(step), dtype=bool)
+    places, running = np.arange(len(groups)), iterations > 0
+    race = _Race(rows, cones, groups, step, free, force)
+    for iteration in count(1):
+        if iteration == 1 or is_tested(iteration - 1):
+            kept = running[race.groups]
+            if not kept.any():
+                return result, used, solved
+            if kept.sum() <= LEFT_SHARE * len(kept):
+                places = places[kept]
+                race.select(kept)
+        there, change = race.projected()
+        if is_tested(iteration):
+            used[running] = iteration
+            solved |= running & (race.residuals(change) <= tolerance)
+            leaving = running & (solved | (iteration >= iterations))
+            leaves = leaving[race.groups]
+            result.reshape(3, -1)[:, places[leaves]] = there.reshape(3, -1)[:, leaves]
+            running = running & ~leaving
+        race.go_on(there, change)
+
+
+class _Race:
+    """Forces of groups at an iteration, see `accelerated`; arguments of `accelerated_groups`."""
+
+    def __init__(self, rows, cones, groups, step, free, force):
+        self._rows, self._cones, self._free = rows, cones, free
+        self.groups = groups
+        self._step = step.copy()
+        self._steps = self._spread(self._step)
+        self._theta = np.ones(len(step))
+        self._here = force.copy()
+        cones.project(self._here)
+        self._ahead = self._here
+        self._made_here = self._made_ahead = rows.response(self._here)
+
+    def projected(self):
+        """Return the forces (3k,) after a projected step, and how much they change in it."""
+        there = self._ahead - self._steps * (self._made_ahead + self._free)
+        self._cones.project(there)
+        return there, there - self._ahead
+
+    def residuals(self, change):
+        """Return the largest change of motion in each group, (g,)."""
+        largest = np.zeros(len(self._step))
+        np.maximum.at(largest, self.groups, np.abs(change).reshape(3, -1).max(axis=0))
+        return largest / self._step
+
+    def select(self, kept):
+        """Go on with the contacts (k,) bool only."""
+        def left(vector):
+            return vector.reshape(3, -1)[:, kept].ravel()
+
+        self.groups = self.groups[kept]
+        self._rows, self._cones = self._rows.select(kept), self._cones.select(kept)
+        self._free, self._steps = left(self._free), left(self._steps)
+        self._here, self._made_here = left(self._here), left(self._made_here)
+        self._ahead, self._made_ahead = left(self._ahead), left(self._made_ahead)
+
+    def go_on(self, there, change):
+        """Go on from projected forces, with momentum or without, or back with a shorter step."""
+        made_there = self._rows.response(there)
+        curvature = self._sums(change * (made_there - self._made_ahead))
+        size = self._sums(change * change)
+        moved = there - self._here
+        turned = self._sums(change * moved) < 0.0
+        too_long = (0.0 < size) & (size < curvature * self._step)
+        theta = self._theta
+        following = 2.0 * theta / (theta + np.sqrt(theta * theta + 4.0))
+        weight = theta * (1.0 - theta) / (theta * theta + following)
+        weight[turned] = 0.0
+        self._theta = np.where(turned | too_long, 1.0, following)
+        weights = self._spread(weight)
+        ahead = there + weights * moved
+        made_ahead = made_there + weights * (made_there - self._made_here)
+        if too_long.any():
+            self._step[too_long] = SHORTER * size[too_long] / curvature[too_long]
+            self._steps = self._spread(self._step)
+            back = self._spread(too_long)
+            ahead, there = np.where(back, self._here, (ahead, there))
+            made_ahead, made_there = np.where(back, self._made_here, (made_ahead, made_there))
+        self._here, self._made_here = there, made_there
+        self._ahead, self._made_ahead = ahead, made_ahead
+
+    def _spread(self, values):
+        """Return values (g,) of groups for each of their rows, (3k,)."""
+        return np.tile(values[self.groups], 3)
+
+    def _sums(self, values):
+        """Return the sums (g,) of values (3k,) over the rows of groups."""
+        return np.bincount(self.groups, values.reshape(3, -1).sum(axis=0), len(self._step))
+
+
+def largest_eigenvalues(response, vector, groups, group_count, rounds):
+    """
+    Return (estimates (g,), vector (n,)) as of `largest_eigenvalue`, for each group.
+
+    Of a response that joins no entries (n,) of different `groups` (n,) int below `group_count`.
+    """
+    for _ in range(rounds):
+        size = np.sqrt(np.bincount(groups, vector * vector, group_count))
+        vector = response(vector / np.where(size > 0, size, 1.0)[groups])
+    return np.sqrt(np.bincount(groups, vector * vector, group_count)), vector
