@@ -65,6 +65,12 @@ _SETTLED = 1e-9
 _FEW_VALUES = 60
 """Up to so many plain floats are quicker."""
 
+_LEFT, _STIFFER = 1e-6, 1e-3
+"""
+Where refining leaves more of the compliance than this part of the free motion, as of the cube of a
+kilogram that a hundred tons stand on, it is tried again with so much of the compliance.
+"""
+
 _LADDERS = ((1e-2,), (1e-1, 1e-2, 1e-3, 1e-4))
 """
 Compliances, of the mean normal response, on the way down to the canonical one where Newton's
@@ -86,6 +92,11 @@ def solve_newton(problem, guess, accuracy):
     best = newton.refined(guess, accuracy)
     used = newton.iterations
     if best is not None:
+        if newton.left > _LEFT:
+            stiffer = Newton(problem, _STIFFER * compliance)
+            again = stiffer.refined(best, accuracy)
+            used += stiffer.iterations
+            best = best if again is None or stiffer.left > newton.left else again
         return Solution(best, used, newton.first)
     for ladder in _LADDERS:
         force = newton.floor
@@ -124,6 +135,8 @@ class Newton:
         """See the class."""
         self.iterations = 0
         """Linear systems made so far."""
+        self.left = 0.0
+        """What refining has left of the compliance, of the free motion."""
         self.first = None
         """The last force (3k,) with the whole compliance, or None."""
         self._free = problem.free
@@ -157,17 +170,19 @@ class Newton:
         reference, done = self.floor, False
         force = self.first = self._iterate(reference, self._start() if guess is None else guess,
                                            max(tolerance, _SETTLED * self._scale))
+        if force is None:
+            return None
         for _ in range(canonical.MAX_PASSES):
-            if force is None or done:
-                break
             change = force - reference
-            if self._compliance * _largest(change) <= tolerance:
+            left = self._compliance * _largest(change)
+            if done or left <= tolerance:
                 break
             reference, ahead, done = self._extrapolated(force, change, tolerance)
             refined = self._iterate(reference, ahead, tolerance)
             if refined is None:
                 break
             force = refined
+        self.left = left / (self._scale or 1.0)
         return force
 
     def settled(self, guess):

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Light bodies on heavy ones: up to a million million times as heavy."""
+"""Light bodies on heavy ones, up to a million million times as heavy, and heavy ones on light."""
 
 import numpy as np
 import pytest
@@ -61,4 +61,18 @@ def test_a_heavy_body_that_is_set_down_with_a_light_one_stays(ratio, friction):
     # a gap counts as closed that is less than a fifth of a step's fall, g h^2
     np.testing.assert_allclose(simulation.position[:, 2], [0.1, 0.225],
                                atol=GRAVITY / 240 ** 2 / 5)
+    assert simulation.asleep.all()
+
+
+@pytest.mark.parametrize('ratio', [1.0, 1e3, 1e5, 1e6, 1e7])
+def test_a_light_body_carries_a_heavy_one(ratio):
+    """A box of a metre on a cube of 5 cm and a kilogram: neither moves, and both sleep."""
+    simulation = Simulation(load_scene({
+        'material': {'friction': FRICTION, 'restitution': 0.0},
+        'planes': [{'name': 'ground', 'normal': [0, 0, 1]}],
+        'bodies': [
+            {'name': 'cube', 'cube': {'edge': 0.05}, 'mass': 1.0, 'position': [0, 0, 0.025]},
+            {'name': 'box', 'cube': {'edge': 1.0}, 'mass': ratio, 'position': [0, 0, 0.55]}]}))
+    simulation.advance(0.1)
+    np.testing.assert_allclose(simulation.position, [[0, 0, 0.025], [0, 0, 0.55]], atol=1e-11)
     assert simulation.asleep.all()
