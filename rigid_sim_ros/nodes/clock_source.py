@@ -18,6 +18,9 @@ from rigid_sim_ros.topics import PUBLISHED
 
 ROW = next(row for row in PUBLISHED if row.parameter == 'publish_clock')
 
+_UNKNOWN = '_NODE_NAME_UNKNOWN_'
+"""The name rcl gives a node that has not been discovered yet."""
+
 
 class ClockSource:
     """
@@ -82,6 +85,12 @@ class ClockSource:
                 self._node.get_name(), self._node.get_namespace())
 
     def _say_left_to(self, info):
-        name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
         self._node.get_logger().info(
-            f'{ROW.name} is left to {name}; set publish_clock to publish it too')
+            f'{ROW.name} is left to {name_of(info)}; set publish_clock to publish it too')
+
+
+def name_of(info):
+    """Return the name of the node of an endpoint; its publisher may be known before it is."""
+    if info.node_name == _UNKNOWN:
+        return 'another node'
+    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
