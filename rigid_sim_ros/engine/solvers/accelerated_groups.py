@@ -55,15 +55,14 @@ def accelerated_groups(rows, cones, groups, step, free, force, tolerance, iterat
     result, used = force.copy(), np.zeros(len(step), dtype=int)
     solved = np.zeros(len(step), dtype=bool)
     places, running = np.arange(len(groups)), iterations > 0
+    if not running.any():
+        return result, used, solved
     race = _Race(rows, cones, groups, step, free, force)
     for iteration in count(1):
-        if iteration == 1 or is_tested(iteration - 1):
-            kept = running[race.groups]
-            if not kept.any():
-                return result, used, solved
-            if kept.sum() <= LEFT_SHARE * len(kept):
-                places = places[kept]
-                race.select(kept)
+        kept = running[race.groups]
+        if kept.sum() <= LEFT_SHARE * len(kept):
+            places = places[kept]
+            race.select(kept)
         there, change = race.projected()
         if is_tested(iteration):
             used[running] = iteration
@@ -72,6 +71,8 @@ def accelerated_groups(rows, cones, groups, step, free, force, tolerance, iterat
             leaves = leaving[race.groups]
             result.reshape(3, -1)[:, places[leaves]] = there.reshape(3, -1)[:, leaves]
             running = running & ~leaving
+            if not running.any():
+                return result, used, solved
         race.go_on(there, change)
 
 
