@@ -24,7 +24,8 @@ import pytest
 
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
-from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget, SAVED
+from rigid_sim_ros.engine.lasting_contact.pile.budget import (
+    Budget, newton_pays, SAVED, WAITS)
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
@@ -260,6 +261,22 @@ def test_what_quiet_steps_leave_is_there_for_others():
     assert Budget([budget, Budget([budget])]).saved == 50
     budget.spend(np.array((0,)), np.array((2 * SAVED,)))
     assert budget.saved == SAVED
+
+
+def test_newtons_method_waits_where_it_does_not_pay():
+    """After less than three of four groups solved so many solutions do without it."""
+    budget = Budget([])
+    nothing = np.zeros(1)
+    budget.note_newton(0, 0)
+    budget.note_newton(4, 3)
+    assert budget.tries_newton
+    budget.note_newton(4, 2)
+    for _ in range(WAITS):
+        budget.spend(nothing, nothing)
+        assert not budget.tries_newton and not Budget([budget]).tries_newton
+    budget.spend(nothing, nothing)
+    assert budget.tries_newton
+    assert newton_pays(7, 0) and newton_pays(8, 6) and not newton_pays(8, 5)
 
 
 @pytest.mark.parametrize('share', [(1.0, 1.0, 1.0), (0.5, 0.5, 1.0), (0.5, 0.5, 0.5)])

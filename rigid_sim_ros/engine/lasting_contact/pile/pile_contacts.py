@@ -19,6 +19,7 @@ import numpy as np
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
 from rigid_sim_ros.engine.graph import alike, group_numbers
+from rigid_sim_ros.engine.lasting_contact.pile.budget import newton_pays
 from rigid_sim_ros.engine.lasting_contact.pile.group_newton import newton_forces
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import DenseRows, PointRows
 from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones
@@ -110,22 +111,25 @@ class PileContacts:
 
     def solved(self, free, forces, tolerance, iterations, thorough):
         """
-        Return (forces by row, iterations used (g,)): an approximate solution, group by group.
+        Return (forces by row, iterations used (g,), (groups tried, groups solved by Newton)).
 
-        Of motion without forces, less what is asked for, and forces to start from, by row, to
-        tolerances (g,) of motion in at most so many iterations (g,). `thorough` groups (g,) bool
-        that the gradient does not solve at once are tried by Newton's method.
+        It is an approximate solution, group by group: of motion without forces, less what is
+        asked for, and forces to start from, by row, to tolerances (g,) of motion in at most so
+        many iterations (g,). `thorough` groups (g,) bool that the gradient does not solve at once
+        are tried by Newton's method.
         """
         first = np.where(thorough, np.minimum(iterations, self._first), iterations)
         forces, used, solved = self._by_gradient(free, forces, tolerance, first)
         left = ~solved & thorough
+        tries = 0, 0
         if left.any():
-            used += self._by_newton(left, free, forces, tolerance)
+            more, tries = self._by_newton(left, free, forces, tolerance)
+            used += more
             rest = np.where(left, iterations - first, 0)
             if rest.any():
                 forces, more, _ = self._by_gradient(free, forces, tolerance, rest)
                 used += more
-        return forces, used
+        return forces, used, tries
 
     def frictionless(self, free, forces, tolerance, iterations):
         """Return forces by row as `solved` does, without friction, for one limit for all."""
@@ -146,20 +150,29 @@ class PileContacts:
         return forces, np.full(self.group_count, used), left <= tolerance
 
     def _by_newton(self, groups, free, forces, tolerance):
-        """Put the forces of groups (g,) bool into those by row; return iterations used (g,)."""
+        """
+        Put the forces of groups (g,) bool into those by row.
+
+        Return (iterations used (g,), (groups tried, groups solved)).
+        """
+        tried = solved = 0
         used = np.zeros(self.group_count, dtype=int)
         may_close = free[self._places] < PARTING
         for group, places in alike(np.where(groups[self.groups] & may_close, self.groups, -1)):
             if group < 0:
                 continue
+            if not newton_pays(tried, solved):
+                break
             points = self._places[places]
             found, used[group] = newton_forces(
                 self._scaled_rows[:, places], self._slots[:, places],
                 free.reshape(3, -1)[:, points], self._friction[points],
                 forces.reshape(3, -1)[:, points], tolerance[group])
+            tried += used[group] > 0
             if found is not None:
+                solved += 1
                 forces.reshape(3, -1)[:, points] = found.reshape(3, -1)
-        return used
+        return used, (tried, solved)
 
     def _dense(self, rows, slots):
         """Return the rows as a matrix."""

@@ -214,9 +214,11 @@ class PileStep:
         contacts = self.contacts
         limits = solver_limits(self._island, self._scales, contacts, self._start, self._duration,
                                np.where(self.hits, -self.speed, 0.0))
-        forces, used = contacts.solved(
+        forces, used, tries = contacts.solved(
             contacts.rows.motion(velocity) + contacts.row_motion(asked, NEVER), forces,
-            limits.tolerance, limits.share + self._budget.saved, limits.thorough)
+            limits.tolerance, limits.share + self._budget.saved,
+            limits.thorough & self._budget.tries_newton)
+        self._budget.note_newton(*tries)
         self._budget.spend(used, limits.share)
         self._island.world.work.solver_iterations += int(used.max())
         return forces, contacts.rows.momentum(forces)
