@@ -11,7 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
-"""What a pile's solver may take: iterations that some steps leave and others need, and Newton's."""
+"""What a pile may take to be solved: iterations that some steps leave and others need, Newton."""
 
 SAVED = 2000
 """
