@@ -18,6 +18,7 @@ from island_run import body, IslandRun
 
 import numpy as np
 
+from rigid_sim_ros.engine.lasting_contact.pile import pile_contacts
 from rigid_sim_ros.engine.shapes import Cube
 
 EDGE, SPEED, GAP = 0.2, 1.0, 1e-4
@@ -52,3 +53,29 @@ def test_a_column_is_not_solved_by_others():
         run.run(3 / 240)
     np.testing.assert_allclose(among.state.position[:, :10], alone.state.position[:, :10],
                                atol=1e-9)
+
+
+def test_newtons_method_is_given_up_where_it_does_not_pay(monkeypatch):
+    """If it solves none it is tried for eight of fourteen columns, and then not for a while."""
+    tried = []
+
+    def failing(*arguments):
+        tried.append(arguments)
+        return None, 20
+
+    monkeypatch.setattr(pile_contacts, 'newton_forces', failing)
+    run = columns(14, 10)
+    run.run(3 / 240)
+    assert len(tried) == 8
+
+
+def test_the_gradient_takes_no_notice_of_other_columns(monkeypatch):
+    """Without Newton's method: the others move alike if one column slides."""
+    monkeypatch.setattr(pile_contacts, 'newton_forces', lambda *arguments: (None, 1))
+    alike, other = columns(14, 10), columns(14, 10)
+    other.state.linear_velocity[0, :10] = 0.5
+    for run in (alike, other):
+        run.step()
+    assert np.abs((alike.state.linear_velocity - other.state.linear_velocity)[:, :10]).max() > 1e-4
+    np.testing.assert_allclose(alike.state.linear_velocity[:, 10:],
+                               other.state.linear_velocity[:, 10:], atol=1e-12)

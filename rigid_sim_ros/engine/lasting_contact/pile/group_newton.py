@@ -23,7 +23,7 @@ from rigid_sim_ros.engine.solvers.problem import ContactProblem
 MOST_BODIES = 12
 """
 Of a group. From what 40 iterations of the gradient leave Newton's method solves columns of ten in
-a twentieth of the time in which that does, and nine of ten groups of up to ten tumbled cubes; of
+a twentieth of the time in which that does, and four of five groups of up to ten tumbled cubes; of
 more than 30 cubes it does one group of five, in the time of the gradient.
 """
 
