@@ -188,6 +188,7 @@ class Islands:
             self._members = members
             self._islands, self._spare = self._found(
                 members, state, self._reach.until(state, start, end), motion)
+            self._pairs.keep(self._islands)
         return self._islands
 
     def _found(self, members, state, reach, motion):

@@ -14,8 +14,6 @@
 
 """Which pairs are in lasting contact: the events of its beginning and its end."""
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from rigid_sim_ros.engine.events import BEGIN, END
@@ -42,7 +40,13 @@ class LastingPairs:
         self._world = world
         self._last_seen = {}
         """By pair (a, b): the `_Seen` it was last seen in, and which contact of that it is."""
-        self._by_island = WeakKeyDictionary()
+        self._by_island = {}
+        """By island: the `_Seen` of its contacts after its last step."""
+
+    def keep(self, islands):
+        """Note that there are no other islands any more than these."""
+        self._by_island = {island: self._by_island[island] for island in islands
+                           if island in self._by_island}
 
     def update(self, time, island, contacts):
         """Note what began and what ended by `time` [s]; contacts are in columns of the island."""
@@ -60,13 +64,6 @@ class LastingPairs:
         for pair in sorted(before - rows.keys()):
             self._note(time, pair, END, *self._last_seen.pop(pair))
         self._last_seen.update((pair, (seen, row)) for pair, row in rows.items())
-
-    def forget(self, time, indices):
-        """Take bodies (k,) out of contact, after a command say, at `time` [s]."""
-        gone = set(np.asarray(indices).tolist())
-        self._by_island.clear()
-        for pair in sorted(pair for pair in self._last_seen if not gone.isdisjoint(pair)):
-            self._note(time, pair, END, *self._last_seen.pop(pair))
 
     def _note(self, time, pair, kind, seen, row):
         contacts = seen.contacts

@@ -106,3 +106,7 @@ class Scene:
 
     impact_law: str = 'poisson'
     """What restitution means in an impact: a key of `impacts.IMPACT_LAWS`."""
+
+    def __deepcopy__(self, memo):
+        """Return itself, as nothing in it changes: it would be most of a copied simulation."""
+        return self

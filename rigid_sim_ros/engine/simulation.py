@@ -14,6 +14,7 @@
 
 """A simulation: what users of the engine hold in their hands."""
 
+from copy import deepcopy
 from dataclasses import replace
 from itertools import accumulate, repeat
 from math import inf
@@ -39,7 +40,8 @@ class Simulation(Readings):
     A scene in motion.
 
     Vectors are in world axes, SI units, radians; quaternions x, y, z, w, body to world. What can
-    be read of it is in `Readings`.
+    be read of it is in `Readings`. It can be copied (by `copy`) and pickled at any time: the copy
+    goes its own way, and to the same end to the last bit if it is told the same.
 
     Parameters
     ----------
@@ -63,7 +65,7 @@ class Simulation(Readings):
             raise ValueError(f'max_step is {shown(max_step)} s; allowed: a positive number')
         self._method_name, self._max_step = method, float(max_step)
         self._start, self._duration = scene, 0.0
-        self._coming_times = self._times_if_repeated
+        self._told_times = None
         self.reset()
 
     def reset(self):
@@ -75,6 +77,10 @@ class Simulation(Readings):
         self._events, self._work = EventLog(), Work()
         self._collisions = self._events.take()
         self._build(self._start, state_of(self._start), 0.0)
+
+    def __copy__(self):
+        """Return a copy that goes its own way: half of one would move with this."""
+        return deepcopy(self)
 
     # -- time ----------------------------------------------------------------------------------
 
@@ -104,7 +110,7 @@ class Simulation(Readings):
 
         What is read is the same to the bit, but takes less time if the durations vary.
         """
-        self._coming_times = coming_times
+        self._told_times = coming_times
 
     # -- commands ------------------------------------------------------------------------------
 
@@ -205,7 +211,7 @@ class Simulation(Readings):
         bodies = bodies_of(scene)
         world = World(
             bodies, np.array(scene.gravity, dtype=float), scene.impact_law, self._max_step,
-            self._events, self._work, lambda count: self._coming_times(count))
+            self._events, self._work, self._coming_times)
         self._method = METHODS[self._method_name](world, state, time)
         self._scene, self._world = scene, world
         self._index = {name: index for index, name in enumerate(bodies.names)}
@@ -221,8 +227,10 @@ class Simulation(Readings):
         self._collisions = renumbered(self._collisions, numbers)
         self._events.renumber(numbers)
 
-    def _times_if_repeated(self, count):
-        """Return the next times [s] if the last duration is repeated, added up as it is."""
+    def _coming_times(self, count):
+        """Return the next times [s], as told, or if the last duration is repeated, added up."""
+        if self._told_times is not None:
+            return self._told_times(count)
         return list(accumulate(repeat(self._duration, count), initial=self.time))[1:]
 
     def _set_motion(self, indices, values):

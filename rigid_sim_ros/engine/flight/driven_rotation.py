@@ -27,6 +27,7 @@ from functools import partial
 
 import numpy as np
 
+from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
 from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
 from rigid_sim_ros.engine.flight.packed_columns import PackedColumns
 
@@ -56,9 +57,9 @@ class Chain:
     The number of a stride is its place among the latest, so it holds until `forget` is called.
     """
 
-    def __init__(self, law, constants, time, state):
-        """Begin with a state at a time; `constants` and `state` are the law's."""
-        self.law = law
+    def __init__(self, make_stride, constants, time, state):
+        """Begin with a state at a time; `constants` and `state` are those of `make_stride`."""
+        self._make_stride = make_stride
         self.constants = constants
         self._first = time, state
         self._restart()
@@ -90,7 +91,7 @@ class Chain:
         """Return (unit [s], series) of a stride that is begun, made again if not kept."""
         stride = self._strides.get(self.times[number])
         if stride is None:
-            end, unit, series, state = self.law.stride(
+            end, unit, series, state = self._make_stride(
                 FLOATS, self.constants, self.times[number], self.states[number])
             if number == len(self.times) - 1:
                 self.append(end, state)
@@ -119,13 +120,14 @@ class Chain:
 
 
 class DrivenRotations:
-    """The rotations of all bodies under torque that follow one law."""
+    """The rotations of all bodies under torque that follow one law, see below."""
 
-    def __init__(self, law, body_count):
+    _law = None
+
+    def __init__(self, body_count):
         """Make a table of none of 0 to `body_count` - 1."""
-        self._law = law
         self._chains = {}
-        self._table = PackedColumns(LEADING + law.ROW_COUNT, body_count)
+        self._table = PackedColumns(LEADING + self._law.ROW_COUNT, body_count)
 
     @property
     def count(self):
@@ -201,7 +203,7 @@ class DrivenRotations:
         return self._law.motion_of_one(FLOATS, chain.constants, unit, series, time, fraction)
 
     def _start(self, body, time, constants, state):
-        self._chains[body] = Chain(self._law, constants, time, state)
+        self._chains[body] = Chain(self._law.stride, constants, time, state)
         column = [0.0] * (LEADING + self._law.ROW_COUNT)
         # a stride that holds no time: it is made when it is first asked for
         column[END] = -np.inf
@@ -259,6 +261,18 @@ class DrivenRotations:
             columns = [begin, end, 1 / unit, *self._law.rows(constants, unit, series)]
             self._table.put(bodies[holds], np.array(columns)[:, holds])
         return ~holds
+
+
+class EqualMoments(DrivenRotations):
+    """Those of bodies with equal moments."""
+
+    _law = equal_moments
+
+
+class UnequalMoments(DrivenRotations):
+    """Those of bodies with unequal moments."""
+
+    _law = unequal_moments
 
 
 def _rows(columns):

@@ -49,9 +49,17 @@ class FixedAxisRotations:
 
     def __init__(self, body_count):
         """Make a table of bodies at rest, with the identity as orientation."""
-        self._table = np.zeros((16, body_count))
-        self._table[3] = 1.0
-        self._grows = False
+        table = np.zeros((16, body_count))
+        table[3] = 1.0
+        self.__setstate__((table, False))
+
+    def __getstate__(self):
+        """Return what a copy is made of."""
+        return self._table, self._grows
+
+    def __setstate__(self, state):
+        """Be a copy: rows are to be views of its own table."""
+        self._table, self._grows = state
         self._all = tuple(self._table[rows] for rows in (
             COSINE, SINE, HALF_RATE, QUARTER_GROWTH))
         self._scratch = np.empty(6 * BLOCK)

@@ -17,8 +17,7 @@
 import numpy as np
 
 from rigid_sim_ros.engine.columns import columns_of
-from rigid_sim_ros.engine.flight import equal_moments, unequal_moments
-from rigid_sim_ros.engine.flight.driven_rotation import DrivenRotations
+from rigid_sim_ros.engine.flight.driven_rotation import EqualMoments, UnequalMoments
 from rigid_sim_ros.engine.flight.fixed_axis import BLOCK, FixedAxisRotations
 from rigid_sim_ros.engine.flight.free_rotation import FreeRotations
 from rigid_sim_ros.engine.flight.functions import ARRAYS, FLOATS
@@ -61,8 +60,8 @@ class Flights:
         self._translations = Translations(count)
         self._fixed_axis = FixedAxisRotations(count)
         self._others = {FREE: FreeRotations(count),
-                        DRIVEN_EQUAL: DrivenRotations(equal_moments, count),
-                        DRIVEN_UNEQUAL: DrivenRotations(unequal_moments, count)}
+                        DRIVEN_EQUAL: EqualMoments(count),
+                        DRIVEN_UNEQUAL: UnequalMoments(count)}
         self._present = ()
         self.changes = 0
         """How often any motion was begun or held: what was evaluated before still holds if not."""

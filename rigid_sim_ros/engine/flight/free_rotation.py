@@ -54,23 +54,27 @@ FEW_SAMPLES = 8
 """Up to so many bodies, evaluation is faster one by one in plain floats, measured."""
 
 
+FORMS = trigonometric, hyperbolic
+"""The forms, in the order of the tables."""
+
+
 class FreeRotations:
     """The rotations of all bodies that turn freely, in two tables, one a form."""
 
     def __init__(self, body_count):
         """Make tables of none of 0 to `body_count` - 1."""
-        self._forms = tuple((form, PackedColumns(LEADING + form.ROW_COUNT, body_count))
-                            for form in (trigonometric, hyperbolic))
+        self._tables = tuple(PackedColumns(LEADING + form.ROW_COUNT, body_count)
+                             for form in FORMS)
 
     @property
     def count(self):
         """Count of bodies of this kind."""
-        return sum(table.count for _, table in self._forms)
+        return sum(table.count for table in self._tables)
 
     def begin_one(self, body, time, moments, quaternion, rate, torque):
         """Start one rotation: unit quaternion and world rate in plain floats; no torque."""
         polhode = polhode_of_one(moments, to_body(quaternion, rate))
-        new, old = self._forms
+        new, old = zip(FORMS, self._tables)
         if polhode.complementary < HYPERBOLIC_BELOW:
             new, old = old, new
         form, table = new
@@ -89,7 +93,7 @@ class FreeRotations:
             return
         polhode = polhode_of_many(moments, np.array(to_body(quaternion, rate)))
         near = polhode.complementary < HYPERBOLIC_BELOW
-        for (form, table), chosen in zip(self._forms, (~near, near)):
+        for (form, table), chosen in zip(zip(FORMS, self._tables), (~near, near)):
             for body in table.members(bodies[~chosen]).tolist():
                 table.remove(body)
             if chosen.any():
@@ -103,7 +107,7 @@ class FreeRotations:
 
     def remove(self, body):
         """Forget a body."""
-        for _, table in self._forms:
+        for table in self._tables:
             table.remove(body)
 
     def write_orientations(self, time, indices, out):
@@ -150,12 +154,12 @@ class FreeRotations:
     # -- inside --------------------------------------------------------------------------------
 
     def _form_of(self, body):
-        trigonometric_form, hyperbolic_form = self._forms
-        return trigonometric_form if body in trigonometric_form[1] else hyperbolic_form
+        place = 0 if body in self._tables[0] else 1
+        return FORMS[place], self._tables[place]
 
     def _selected(self, indices):
         """Yield, for each form, where its members are in `indices` and their columns."""
-        for form, table in self._forms:
+        for form, table in zip(FORMS, self._tables):
             if table.count:
                 places, columns = table.select(indices)
                 if len(places):

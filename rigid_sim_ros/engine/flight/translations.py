@@ -28,8 +28,15 @@ class Translations:
 
     def __init__(self, body_count):
         """Make a table of bodies at rest at the origin."""
-        self._table = np.zeros((13, body_count))
-        self._accelerates = False
+        self.__setstate__((np.zeros((13, body_count)), False))
+
+    def __getstate__(self):
+        """Return what a copy is made of."""
+        return self._table, self._accelerates
+
+    def __setstate__(self, state):
+        """Be a copy: rows are to be views of its own table."""
+        self._table, self._accelerates = state
         self.start = self._table[START]
         self._all = tuple(self._table[rows] for rows in (POSITION, VELOCITY, HALF_ACCELERATION))
         self.acceleration = self._table[ACCELERATION]

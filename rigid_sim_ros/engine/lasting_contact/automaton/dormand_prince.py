@@ -21,7 +21,7 @@ faster than arrays for the thirteen numbers of a rigid body.
 """
 
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 
 _A = (
     (1 / 5,),
@@ -88,14 +88,7 @@ class Step:
             bump = h * a - change
             rows.append((y, change, bump, change - h * g - bump, h * (
                 _D1 * a + _D3 * c + _D4 * d + _D5 * e + _D6 * f + _D7 * g)))
-
-        def at(time, part=ALL):
-            s = time / h
-            t = 1.0 - s
-            return [r1 + s * (r2 + t * (r3 + s * (r4 + t * r5)))
-                    for r1, r2, r3, r4, r5 in rows[part]]
-
-        return at
+        return partial(_interpolated, h, rows)
 
     def ended(self, time):
         """
@@ -108,3 +101,10 @@ class Step:
         step.end = self.between(time)
         step.size = time
         return step
+
+
+def _interpolated(size, rows, time, part=ALL):
+    """Return the state a time after the start of a step of this size with these coefficients."""
+    s = time / size
+    t = 1.0 - s
+    return [r1 + s * (r2 + t * (r3 + s * (r4 + t * r5))) for r1, r2, r3, r4, r5 in rows[part]]
