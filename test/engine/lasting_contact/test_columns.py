@@ -14,6 +14,8 @@
 
 """Columns that land side by side in one pile: each is solved to the end, and stands at once."""
 
+from collections import Counter
+
 from island_run import body, IslandRun
 
 import numpy as np
@@ -56,17 +58,41 @@ def test_a_column_is_not_solved_by_others():
 
 
 def test_newtons_method_is_given_up_where_it_does_not_pay(monkeypatch):
-    """If it solves none it is tried for eight of fourteen columns, and then not for a while."""
-    tried = []
+    """If it solves none it is tried for eight of fourteen columns, and for each less and less."""
+    tried, solutions = [], []
+    solved = pile_contacts.PileContacts.solved
 
-    def failing(*arguments):
-        tried.append(arguments)
+    def failing(_rows, slots, *_):
+        tried.append(slots.min())
         return None, 20
 
+    def counted(contacts, *arguments):
+        solutions.append(len(tried))
+        return solved(contacts, *arguments)
+
     monkeypatch.setattr(pile_contacts, 'newton_forces', failing)
+    monkeypatch.setattr(pile_contacts.PileContacts, 'solved', counted)
     run = columns(14, 10)
     run.run(3 / 240)
-    assert len(tried) == 8
+    assert solutions[1] == 8
+    while len(solutions) < 20:
+        run.step()
+    assert set(Counter(tried).values()) <= {3, 4}
+
+
+def test_newtons_method_goes_on_for_whom_it_pays(monkeypatch):
+    """Four columns that it fails on do not keep it from ten others, which stand: 3e-2 if so."""
+    newton_forces = pile_contacts.newton_forces
+
+    def partly_failing(rows, slots, *arguments):
+        return (None, 1) if slots.min() >= 100 else newton_forces(rows, slots, *arguments)
+
+    monkeypatch.setattr(pile_contacts, 'newton_forces', partly_failing)
+    run = columns(14, 10)
+    run.run(8 / 240)
+    moving = np.abs(run.state.linear_velocity).max(axis=0)
+    assert moving[100:140].max() > 1e-2
+    assert moving[:100].max() < 1e-3
 
 
 def test_the_gradient_takes_no_notice_of_other_columns(monkeypatch):

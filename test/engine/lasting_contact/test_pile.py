@@ -24,10 +24,11 @@ import pytest
 
 from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
-from rigid_sim_ros.engine.lasting_contact.pile.budget import (
-    Budget, newton_pays, SAVED, WAITS)
+from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget, SAVED
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
+from rigid_sim_ros.engine.lasting_contact.pile.patience import (
+    newton_pays, Patience, WAITS)
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
 from rigid_sim_ros.engine.model import Material
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
@@ -263,19 +264,24 @@ def test_what_quiet_steps_leave_is_there_for_others():
     assert budget.saved == SAVED
 
 
-def test_newtons_method_waits_where_it_does_not_pay():
-    """After less than three of four groups solved so many solutions do without it."""
-    budget = Budget([])
-    nothing = np.zeros(1)
-    budget.note_newton(0, 0)
-    budget.note_newton(4, 3)
-    assert budget.tries_newton
-    budget.note_newton(4, 2)
-    for _ in range(WAITS):
-        budget.spend(nothing, nothing)
-        assert not budget.tries_newton and not Budget([budget]).tries_newton
-    budget.spend(nothing, nothing)
-    assert budget.tries_newton
+def test_newtons_method_waits_for_whom_it_fails():
+    """Ever longer if it does so again and again, whatever group they are in; not for others."""
+    groups, first_failed = np.array((0, 1, 1, 2)), np.array((False, True))
+    tried = np.array((True, True))
+    patience = Patience(np.array((3, 5, 7, 9)))
+    for waits in (*WAITS[1:], WAITS[-1]):
+        patience.note(groups, tried, ~first_failed)
+        for _ in range(waits):
+            assert patience.allows(groups, 2).tolist() == [True, False]
+            later = Patience(np.array((5, 8)))
+            later.take_over(patience)
+            assert later.allows(np.array((0, 1)), 2).tolist() == [False, True]
+            patience.note(groups, ~tried, ~tried)
+        assert patience.allows(groups, 2).all()
+    patience.note(groups, tried, tried)
+    patience.note(groups, tried, ~first_failed)
+    patience.note(groups, ~tried, ~tried)
+    assert patience.allows(groups, 2).all()
     assert newton_pays(7, 0) and newton_pays(8, 6) and not newton_pays(8, 5)
 
 

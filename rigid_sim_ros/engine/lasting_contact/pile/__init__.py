@@ -37,6 +37,7 @@ from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget
 from rigid_sim_ros.engine.lasting_contact.pile.finding import FAST, Found, KEPT_WAY, run_into
 from rigid_sim_ros.engine.lasting_contact.pile.groups import resting_members, undisturbed
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, MATCH, Quiet
+from rigid_sim_ros.engine.lasting_contact.pile.patience import Patience
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.lasting_contact.pile.pile_step import (
     HIT_ROUNDS, NEVER, OVERLAP, PileStep)
@@ -90,12 +91,15 @@ class Pile:
         self.steps = 0
         """Steps taken, also as part of older ones."""
         self._vector = None
-        for pile in older:
-            self.quiet.take_over(pile.quiet)
-            self.steps = max(self.steps, pile.steps)
-            self._vector = pile.vector_for(island.members, self._vector)
         self.budget = Budget([pile.budget for pile in older])
         """Of iterations of the solver."""
+        self.patience = Patience(island.members)
+        """With Newton's method."""
+        for pile in older:
+            self.quiet.take_over(pile.quiet)
+            self.patience.take_over(pile.patience)
+            self.steps = max(self.steps, pile.steps)
+            self._vector = pile.vector_for(island.members, self._vector)
         self.contacts = None
         """The `PileContacts` in use."""
         self._forces = None
@@ -228,7 +232,7 @@ class Pile:
         if self.contacts is None:
             motion = self._renew(motion, free, scales, duration, 0.0)
         step = PileStep(self._island, free, scales, motion, duration, self.contacts, self._forces,
-                        self.budget)
+                        self.budget, self.patience)
         quick = (duration * self._island.closing(motion) > FAST * scales.length).any()
         for attempt in range(TRIES):
             step.attempt(1 if quick else HIT_ROUNDS)

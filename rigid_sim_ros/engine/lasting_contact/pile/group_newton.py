@@ -51,8 +51,6 @@ def newton_forces(rows, slots, free, friction, force, tolerance):
     """
     bodies, columns = np.unique(slots, return_inverse=True)
     count = len(friction)
-    if len(bodies) > MOST_BODIES + 1:
-        return None, 0
     factor = np.zeros((3, count, len(bodies), 6))
     for side, column in enumerate(columns.reshape(2, count)):
         factor[:, np.arange(count), column] += rows[:, :, side]

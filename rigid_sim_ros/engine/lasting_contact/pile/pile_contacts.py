@@ -19,8 +19,8 @@ import numpy as np
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
 from rigid_sim_ros.engine.graph import alike, group_numbers
-from rigid_sim_ros.engine.lasting_contact.pile.budget import newton_pays
-from rigid_sim_ros.engine.lasting_contact.pile.group_newton import newton_forces
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES, newton_forces
+from rigid_sim_ros.engine.lasting_contact.pile.patience import newton_pays
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import DenseRows, PointRows
 from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones
 from rigid_sim_ros.engine.solvers.accelerated_groups import (
@@ -111,25 +111,26 @@ class PileContacts:
 
     def solved(self, free, forces, tolerance, iterations, thorough):
         """
-        Return (forces by row, iterations used (g,), (groups tried, groups solved by Newton)).
+        Return (forces by row, iterations used (g,), groups tried, solved by Newton (g,) bool).
 
         It is an approximate solution, group by group: of motion without forces, less what is
         asked for, and forces to start from, by row, to tolerances (g,) of motion in at most so
         many iterations (g,). `thorough` groups (g,) bool that the gradient does not solve at once
         are tried by Newton's method.
         """
-        first = np.where(thorough, np.minimum(iterations, self._first), iterations)
+        sizes = np.bincount(self.body_groups, minlength=self.group_count)[:self.group_count]
+        thorough = thorough & (sizes <= MOST_BODIES)
+        # together, each waits for all
+        early = thorough if self._apart else np.full(self.group_count, thorough.any())
+        first = np.where(early, np.minimum(iterations, self._first), iterations)
         forces, used, solved = self._by_gradient(free, forces, tolerance, first)
-        left = ~solved & thorough
-        tries = 0, 0
-        if left.any():
-            more, tries = self._by_newton(left, free, forces, tolerance)
-            used += more
-            rest = np.where(left, iterations - first, 0)
-            if rest.any():
-                forces, more, _ = self._by_gradient(free, forces, tolerance, rest)
-                used += more
-        return forces, used, tries
+        more, by_newton = self._by_newton(~solved & thorough, free, forces, tolerance)
+        # what Newton's method has solved in its norm, too
+        rest = np.where(solved, 0, iterations - first)
+        if rest.any():
+            forces, again, _ = self._by_gradient(free, forces, tolerance, rest)
+            used += again
+        return forces, used + more, more > 0, by_newton
 
     def frictionless(self, free, forces, tolerance, iterations):
         """Return forces by row as `solved` does, without friction, for one limit for all."""
@@ -153,26 +154,27 @@ class PileContacts:
         """
         Put the forces of groups (g,) bool into those by row.
 
-        Return (iterations used (g,), (groups tried, groups solved)).
+        Return (iterations used (g,), which groups (g,) bool are solved).
         """
-        tried = solved = 0
         used = np.zeros(self.group_count, dtype=int)
+        solved = np.zeros(self.group_count, dtype=bool)
+        if not groups.any():
+            return used, solved
         may_close = free[self._places] < PARTING
         for group, places in alike(np.where(groups[self.groups] & may_close, self.groups, -1)):
             if group < 0:
                 continue
-            if not newton_pays(tried, solved):
+            if not newton_pays(np.count_nonzero(used), np.count_nonzero(solved)):
                 break
             points = self._places[places]
             found, used[group] = newton_forces(
                 self._scaled_rows[:, places], self._slots[:, places],
                 free.reshape(3, -1)[:, points], self._friction[points],
                 forces.reshape(3, -1)[:, points], tolerance[group])
-            tried += used[group] > 0
             if found is not None:
-                solved += 1
+                solved[group] = True
                 forces.reshape(3, -1)[:, points] = found.reshape(3, -1)
-        return used, (tried, solved)
+        return used, solved
 
     def _dense(self, rows, slots):
         """Return the rows as a matrix."""

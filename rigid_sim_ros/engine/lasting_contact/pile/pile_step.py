@@ -67,12 +67,14 @@ class PileStep:
         To start from, by row.
     budget : Budget
         Of iterations.
+    patience : Patience
+        With Newton's method.
 
     """
 
-    def __init__(self, island, free, scales, motion, duration, contacts, forces, budget):
+    def __init__(self, island, free, scales, motion, duration, contacts, forces, budget, patience):
         """See the class."""
-        self._budget = budget
+        self._budget, self._patience = budget, patience
         self._island, self._free, self._scales = island, free, scales
         self._start, self._duration = motion, duration
         self._kicked = free.kicked(motion, duration)
@@ -214,11 +216,12 @@ class PileStep:
         contacts = self.contacts
         limits = solver_limits(self._island, self._scales, contacts, self._start, self._duration,
                                np.where(self.hits, -self.speed, 0.0))
-        forces, used, tries = contacts.solved(
+        groups = contacts.body_groups[:-1]
+        forces, used, tried, solved = contacts.solved(
             contacts.rows.motion(velocity) + contacts.row_motion(asked, NEVER), forces,
             limits.tolerance, limits.share + self._budget.saved,
-            limits.thorough & self._budget.tries_newton)
-        self._budget.note_newton(*tries)
+            limits.thorough & self._patience.allows(groups, contacts.group_count))
+        self._patience.note(groups, tried, solved)
         self._budget.spend(used, limits.share)
         self._island.world.work.solver_iterations += int(used.max())
         return forces, contacts.rows.momentum(forces)
