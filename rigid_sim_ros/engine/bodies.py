@@ -92,6 +92,11 @@ def ordered(scene):
             + [body for body in scene.bodies if body.fixed])
 
 
+def names_of(scene):
+    """Return the names of bodies and planes, (n,) of str, in that order."""
+    return tuple(row.name for row in (*ordered(scene), *scene.planes))
+
+
 def bodies_of(scene):
     """Return the constants of a `model.Scene` as `Bodies`."""
     bodies = ordered(scene)
@@ -104,7 +109,7 @@ def bodies_of(scene):
     plane_zeros = [(0.0, 0.0, 0.0)] * len(planes)
     body_zeros = [(0.0, 0.0, 0.0)] * len(bodies)
     return Bodies(
-        names=tuple(row.name for row in (*bodies, *planes)),
+        names=names_of(scene),
         moving_count=moving_count,
         body_count=len(bodies),
         kinds=tuple(body.shape.kind for body in bodies) + (PLANE,) * len(planes),

@@ -29,7 +29,6 @@ from rigid_sim_ros.engine.broad_phase import candidate_pairs
 from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.graph import component_labels
 from rigid_sim_ros.engine.lasting_contact import advance_island, FEW, Island
-from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.narrow_phase import separations
 from rigid_sim_ros.engine.reach import passed_on, Reach, REACH_FACTOR, within
 
@@ -80,7 +79,7 @@ class Islands:
         """(k,): the bodies in these islands."""
         self._spare = 0.0
         """How far they may still come nearer to anything [m] before islands are made again."""
-        self._pairs = LastingPairs(world)
+        self._pairs = world.lasting_pairs
         self._reach = Reach(world.bodies, flights)
 
     def step_end(self, time, end):

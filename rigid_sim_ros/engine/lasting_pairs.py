@@ -16,7 +16,7 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.events import BEGIN, END
+from rigid_sim_ros.engine.events import BEGIN, END, GONE
 
 
 class _Seen:
@@ -36,12 +36,26 @@ class _Seen:
 class LastingPairs:
     """The pairs that touch at the end of a step, told apart from those before."""
 
-    def __init__(self, world):
-        self._world = world
+    def __init__(self):
+        """Start with none."""
         self._last_seen = {}
         """By pair (a, b): the `_Seen` it was last seen in, and which contact of that it is."""
         self._by_island = {}
         """By island: the `_Seen` of its contacts after its last step."""
+
+    @property
+    def bodies(self):
+        """Return the bodies in these pairs, (k,) int."""
+        return np.unique(np.array([*self._last_seen], dtype=int))
+
+    def renumbered(self, numbers):
+        """Return the same pairs with other numbers (n,) of bodies, without those that are gone."""
+        other = LastingPairs()
+        for (a, b), last in self._last_seen.items():
+            pair = int(numbers[a]), int(numbers[b])
+            if GONE not in pair:
+                other._last_seen[pair] = last
+        return other
 
     def keep(self, islands):
         """Note that there are no other islands any more than these."""
@@ -60,12 +74,12 @@ class LastingPairs:
         members = set(island.members.tolist())
         before = {pair for pair in self._last_seen if not members.isdisjoint(pair)}
         for pair in sorted(rows.keys() - before):
-            self._note(time, pair, BEGIN, seen, rows[pair])
+            _note(island.world.events, time, pair, BEGIN, seen, rows[pair])
         for pair in sorted(before - rows.keys()):
-            self._note(time, pair, END, *self._last_seen.pop(pair))
+            _note(island.world.events, time, pair, END, *self._last_seen.pop(pair))
         self._last_seen.update((pair, (seen, row)) for pair, row in rows.items())
 
-    def _note(self, time, pair, kind, seen, row):
-        contacts = seen.contacts
-        self._world.events.append(time, *pair, kind, contacts.point[:, row],
-                                  contacts.normal[:, row])
+
+def _note(events, time, pair, kind, seen, row):
+    contacts = seen.contacts
+    events.append(time, *pair, kind, contacts.point[:, row], contacts.normal[:, row])

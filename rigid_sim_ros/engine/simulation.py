@@ -22,11 +22,12 @@ from numbers import Real
 
 import numpy as np
 
-from rigid_sim_ros.engine.bodies import bodies_of
+from rigid_sim_ros.engine.bodies import bodies_of, names_of
 from rigid_sim_ros.engine.body_checks import check_body
 from rigid_sim_ros.engine.commands import (
     column_of_moving, CommandError, index_rows, shown, unit_quaternion, vector, vector_rows)
 from rigid_sim_ros.engine.events import EventLog, GONE, renumbered
+from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.engine.model import Scene
 from rigid_sim_ros.engine.readings import Readings
@@ -76,7 +77,7 @@ class Simulation(Readings):
         """
         self._events, self._work = EventLog(), Work()
         self._collisions = self._events.take()
-        self._build(self._start, state_of(self._start), 0.0)
+        self._build(self._start, state_of(self._start), 0.0, LastingPairs())
 
     def __copy__(self):
         """Return a copy that goes its own way: half of one would move with this."""
@@ -206,24 +207,26 @@ class Simulation(Readings):
 
     # -- inside --------------------------------------------------------------------------------
 
-    def _build(self, scene, state, time):
+    def _build(self, scene, state, time, lasting_pairs):
         """Simulate this scene from this state and time [s] on; or raise and change nothing."""
         bodies = bodies_of(scene)
         world = World(
             bodies, np.array(scene.gravity, dtype=float), scene.impact_law, self._max_step,
-            self._events, self._work, self._coming_times)
+            self._events, lasting_pairs, self._work, self._coming_times)
         self._method = METHODS[self._method_name](world, state, time)
         self._scene, self._world = scene, world
         self._index = {name: index for index, name in enumerate(bodies.names)}
 
     def _change_scene(self, bodies):
         """Go on with other bodies; those that were there before go on as they are."""
-        scene, before = replace(self._scene, bodies=bodies), self.all_names
+        scene = replace(self._scene, bodies=bodies)
+        index = {name: number for number, name in enumerate(names_of(scene))}
+        numbers = np.array([index.get(name, GONE) for name in self.all_names], dtype=int)
         try:
-            self._build(scene, state_after(self._method.state, self._index, scene), self.time)
+            self._build(scene, state_after(self._method.state, self._index, scene), self.time,
+                        self._world.lasting_pairs.renumbered(numbers))
         except ValueError as error:
             raise CommandError(str(error)) from None
-        numbers = np.array([self._index.get(name, GONE) for name in before], dtype=int)
         self._collisions = renumbered(self._collisions, numbers)
         self._events.renumber(numbers)
 

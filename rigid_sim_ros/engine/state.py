@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from rigid_sim_ros.engine.bodies import ordered
+from rigid_sim_ros.engine.bodies import names_of, ordered
 
 
 @dataclass
@@ -81,7 +81,7 @@ def state_after(before, index, scene):
     each name; the others start as they are in the scene.
     """
     state = state_of(scene)
-    names = [body.name for body in ordered(scene)] + [plane.name for plane in scene.planes]
+    names = names_of(scene)
     kept = [column for column, name in enumerate(names) if name in index]
     for field in fields(State):
         getattr(state, field.name)[:, kept] = (

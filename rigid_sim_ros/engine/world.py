@@ -21,6 +21,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.bodies import Bodies
 from rigid_sim_ros.engine.events import EventLog
+from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.work import Work
 
 
@@ -39,6 +40,9 @@ class World:
     """Longest step of lasting contact, or of everything in methods that step [s]."""
 
     events: EventLog
+    lasting_pairs: LastingPairs
+    """Those in lasting contact, who may have been there before this world was made."""
+
     work: Work
     coming_times: Callable
     """`coming_times(count)`: up to so many times [s] at which states are likely to be read."""

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from rigid_sim_ros.engine import CommandError, Simulation
-from rigid_sim_ros.engine.events import IMPACT
+from rigid_sim_ros.engine.events import BEGIN, END, IMPACT
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
 from rigid_sim_ros.engine.shapes import Cube, Sphere
 from rigid_sim_ros.scene import load_scene
@@ -110,3 +110,30 @@ def test_collisions_name_the_same_bodies_when_others_come_and_go():
         assert (names[event['body_a']], names[event['body_b']]) == ('a', 'ground')
     simulation.remove('a')
     assert not len(simulation.collisions)
+
+
+def test_contact_goes_on_when_others_come_and_go():
+    """It has begun once and ends once; what a body lay on that is gone is told by nobody."""
+    simulation = Simulation(Scene(bodies=(cube('a', position=(0, 0, 0.1)),
+                                          cube('b', position=(0, 0, 0.3))),
+                                  planes=(Plane('ground'),)))
+    assert kinds_after(simulation, 0.3) == {('a', 'b'): [BEGIN], ('a', 'ground'): [BEGIN]}
+    simulation.add(cube('c', position=(5, 0, 9)))
+    assert kinds_after(simulation, 0.3) == {}
+    simulation.remove('c')
+    simulation.add(cube('rock', position=(9, 0, 9), fixed=True))
+    assert kinds_after(simulation, 0.3) == {}
+    assert simulation.asleep.all()
+    simulation.set_velocity('b', (0, 0, 1))
+    assert kinds_after(simulation, 0.1) == {('a', 'b'): [END]}
+    simulation.remove('a')
+    assert IMPACT in kinds_after(simulation, 2.0)['b', 'ground']
+
+
+def kinds_after(simulation, duration):
+    """Return the kinds of the events of a time [s] by the names of pairs."""
+    simulation.advance(duration)
+    names, kinds = simulation.all_names, {}
+    for a, b, kind in simulation.collisions[['body_a', 'body_b', 'kind']].tolist():
+        kinds.setdefault((names[a], names[b]), []).append(kind)
+    return kinds

@@ -48,7 +48,10 @@ class Exact:
         self._read_ahead = ReadAhead(self._flights, world)
         self._state = None
         self._begin(np.arange(world.bodies.count), time, state)
-        self._encounters.fly(np.arange(world.bodies.moving_count), time)
+        # who was in lasting contact goes on in it
+        lasting = np.isin(np.arange(world.bodies.moving_count), world.lasting_pairs.bodies)
+        self._encounters.fly(np.flatnonzero(~lasting), time)
+        self._islands.add(np.flatnonzero(lasting))
 
     @property
     def state(self):

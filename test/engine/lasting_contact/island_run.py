@@ -22,6 +22,7 @@ from rigid_sim_ros.engine import diagnostics
 from rigid_sim_ros.engine.bodies import bodies_of
 from rigid_sim_ros.engine.events import EventLog
 from rigid_sim_ros.engine.lasting_contact import advance_island, Island
+from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
 from rigid_sim_ros.engine.state import state_of
 from rigid_sim_ros.engine.work import Work
@@ -52,8 +53,8 @@ class IslandRun:
             planes = [replace(each, material=material) for each in planes]
         scene = Scene(tuple(bodies), tuple(planes), gravity, law)
         constants = bodies_of(scene)
-        self.world = World(constants, np.array(gravity), law, step, EventLog(), Work(),
-                           lambda count: [np.nan] * count)
+        self.world = World(constants, np.array(gravity), law, step, EventLog(), LastingPairs(),
+                           Work(), lambda count: [np.nan] * count)
         self.state = state_of(scene)
         self.time = 0.0
         self._step = step
