@@ -23,8 +23,8 @@ from math import copysign, inf
 import numpy as np
 
 
-_NO_SPEED = 1e-300
-"""[m/s]: added where a speed is divided by that may be zero."""
+_NO_SPEED = 1e-270
+"""[m/s]: added where a speed is divided by that may be zero; what is fast does not overflow."""
 
 
 def mixed_restitution(bodies, body_a, body_b, speed=inf):

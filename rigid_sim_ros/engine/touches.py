@@ -42,6 +42,9 @@ Points closer than this part of the smaller body meet at the same instant: a fac
 lands with all its corners. Instants are found some 1e-13 as well as that.
 """
 
+MOST_MARGIN = 0.1
+"""The largest margin: an instant is a number, and in a rounding of it fast bodies go far."""
+
 
 class Touch(NamedTuple):
     """What a touch leaves behind."""
@@ -84,7 +87,7 @@ class Touches:
         self._linear = state.linear_velocity.copy()
         self._angular = state.angular_velocity.copy()
 
-    def resolve(self, time, indices, body_a, body_b, margin=TOUCH_MARGIN):
+    def resolve(self, time, indices, body_a, body_b):
         """
         Return the `Touch` of the moving bodies (m,) whose pairs (p,) may touch at `time` [s].
 
@@ -94,12 +97,23 @@ class Touches:
         self._place(time, indices)
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
-        self._world.work.narrow_phases += len(body_a)
-        contacts = find_contacts(bodies, body_a, body_b, self._position, self._orientation,
-                                 margin * size)
+        margin = TOUCH_MARGIN
+        contacts = self._find(body_a, body_b, margin * size)
+        while not contacts.count:
+            # late and fast, bodies are further apart than that at any number next to the instant
+            margin *= 10.0
+            if margin > MOST_MARGIN:
+                raise ArithmeticError(f'bodies are too fast to tell where they touch at {time} s')
+            contacts = self._find(body_a, body_b, margin * size)
         stays = self._apply_all(time, contacts)
         return Touch(*(values.take(indices, axis=-1) for values in (
             self._position, self._orientation, self._linear, self._angular, stays)))
+
+    def _find(self, body_a, body_b, margin):
+        """Return the contacts of pairs (p,) with gaps below margins (p,) [m]."""
+        self._world.work.narrow_phases += len(body_a)
+        return find_contacts(self._world.bodies, body_a, body_b, self._position,
+                             self._orientation, margin)
 
     def _place(self, time, indices):
         """Fill in the poses and velocities of these bodies (k,)."""

@@ -14,11 +14,12 @@
 """Many bodies that touch at one instant: who approaches is struck, who parts flies."""
 
 import numpy as np
+import pytest
 
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
-from rigid_sim_ros.engine.shapes import Cube
+from rigid_sim_ros.engine.shapes import Cube, Sphere
 
 
 def standing(velocities, friction=0.5):
@@ -50,3 +51,39 @@ def test_each_does_what_it_would_do_by_itself():
         np.testing.assert_allclose(
             simulation.position[same] - np.outer(same, (1, 0, 0)),
             np.broadcast_to(alone.position, (len(same), 3)), rtol=0, atol=1e-9)
+
+
+def above_ground(shape, heights):
+    """Return a simulation of bodies at rest with gaps (n,) [m] to the ground, without gravity."""
+    material = Material(restitution=1.0, friction=0.0)
+    bodies = tuple(Body(f'body_{number}', shape, 1.0, shape.inertia(1.0),
+                        position=(1.0 * number, 0.0, height + 0.005), material=material)
+                   for number, height in enumerate(heights))
+    return Simulation(Scene(bodies=bodies, planes=(Plane('ground', material=material),),
+                            gravity=(0.0, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize('shape', [Sphere(0.005), Cube(0.01)])
+@pytest.mark.parametrize('time', [1e5, 1e8])
+def test_what_is_late_touches_too(shape, time):
+    """
+    From one number to the next bodies then go further than those are apart that touch.
+
+    They rebound to where a mirror has them, as well as times are known.
+    """
+    height, speed = np.array((1.0, 2.0, 3.0)), np.array((1.0, 2.5, 40.0))
+    simulation = above_ground(shape, height)
+    simulation.advance(time)
+    simulation.set_velocities(np.outer(-speed, (0.0, 0.0, 1.0)))
+    simulation.advance(2.5)
+    np.testing.assert_allclose(simulation.position[:, 2], 0.005 + abs(height - 2.5 * speed),
+                               rtol=0, atol=4 * 40.0 * np.spacing(time))
+
+
+def test_a_touch_that_no_number_tells_is_an_error():
+    """From 1 s to the next number a cube at 1e20 m/s goes 22 km."""
+    simulation = above_ground(Cube(0.01), (1.0,))
+    simulation.advance(1.0)
+    simulation.set_velocity('body_0', (0.0, 0.0, -1e20))
+    with pytest.raises(ArithmeticError, match='too fast to tell where they touch'):
+        simulation.advance(1.0)
