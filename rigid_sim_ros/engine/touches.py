@@ -14,6 +14,7 @@
 
 """Touches at the end of flights: which points meet, their impulses, and who goes on touching."""
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -94,9 +95,23 @@ class Touches:
         Groups of bodies that have nothing to do with each other are solved by themselves. Impulses
         are noted as events.
         """
+        contacts = self._contacts(time, indices, body_a, body_b)
+        return self._touch(indices, self._apply_all(time, contacts))
+
+    def settle(self, time, indices, body_a, body_b):
+        """Return the same of bodies that do not rebound."""
+        contacts = self._contacts(time, indices, body_a, body_b)
+        stays = np.zeros(self._world.bodies.count, dtype=bool)
+        for group in contact_groups(self._world.bodies, contacts):
+            self._apply(time, group, stays, slowest=inf)
+        return self._touch(indices, stays)
+
+    def _contacts(self, time, indices, body_a, body_b):
+        """Fill in what moving bodies (m,) do and return the contacts of pairs (p,) at `time`."""
         self._place(time, indices)
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
+<<<<<<< HEAD
         margin = TOUCH_MARGIN
         contacts = self._find(body_a, body_b, margin * size)
         while not contacts.count:
@@ -106,6 +121,14 @@ class Touches:
                 raise ArithmeticError(f'bodies are too fast to tell where they touch at {time} s')
             contacts = self._find(body_a, body_b, margin * size)
         stays = self._apply_all(time, contacts)
+=======
+        self._world.work.narrow_phases += len(body_a)
+        return find_contacts(bodies, body_a, body_b, self._position, self._orientation,
+                             TOUCH_MARGIN * size)
+
+    def _touch(self, indices, stays):
+        """Return the `Touch` of moving bodies (m,) given which of all (n,) bool stay together."""
+>>>>>>> 2de06a1 (End bounces that have no end, and land without gravity)
         return Touch(*(values.take(indices, axis=-1) for values in (
             self._position, self._orientation, self._linear, self._angular, stays)))
 
@@ -219,21 +242,29 @@ class Touches:
         lasting = contact.parting_speed(impulse) <= threshold
         stays[contacts.body_a[lasting]] = stays[contacts.body_b[lasting]] = True
 
-    def _apply(self, time, contacts, stays):
-        """Apply the impulses of one group's contacts, and mark the bodies that stay together."""
+    def _apply(self, time, contacts, stays, slowest=0.0):
+        """
+        Apply the impulses of one group's contacts, and mark the bodies that stay together.
+
+        What approaches no faster than `slowest` [m/s] does not rebound, whatever stays otherwise.
+        """
         threshold = stick_speed(self._world.bodies, self._flights.acceleration, self._angular,
                                 contacts.body_a.tolist(), contacts.body_b.tolist())
         if self._parting_speed(contacts).min() < 0.0:
-            self._strike(time, contacts, threshold)
+            self._strike(time, contacts, threshold, max(threshold, slowest))
         lasting = self._parting_speed(contacts) <= threshold
         stays[contacts.body_a[lasting]] = True
         stays[contacts.body_b[lasting]] = True
 
-    def _strike(self, time, contacts, threshold):
-        """Apply the impulses of contacts, and note those faster than a threshold [m/s]."""
+    def _strike(self, time, contacts, threshold, slowest):
+        """
+        Apply the impulses of contacts, and note those faster than a threshold [m/s].
+
+        Those no faster than `slowest` [m/s] do not rebound.
+        """
         world = self._world
         impact = resolve_impact(world.bodies, contacts, self._position, self._orientation,
-                                self._linear, self._angular, world.impact_law, threshold)
+                                self._linear, self._angular, world.impact_law, slowest)
         self._linear[:, impact.touched] += impact.linear
         self._angular[:, impact.touched] += impact.angular
         world.work.impacts += 1

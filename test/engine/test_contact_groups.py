@@ -182,11 +182,3 @@ def test_a_column_is_solved_by_newtons_method():
     assert iterations > 0
     held = force.reshape(3, -1)[0].reshape(height, 4).sum(axis=1)
     np.testing.assert_allclose(held, np.arange(height, 0, -1), rtol=1e-8)
-
-
-def test_newtons_method_leaves_large_groups_alone():
-    """They are for the gradient."""
-    rows, slots, free = column(MOST_BODIES + 1)
-    force, iterations = newton_forces(rows, slots, free, np.full(free.shape[1], 0.5),
-                                      np.zeros_like(free), 1e-10)
-    assert force is None and iterations == 0

@@ -24,6 +24,7 @@ come to rest; what rests is left alone until something wakes it.
 import numpy as np
 
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
+from rigid_sim_ros.engine.cascade import Cascade
 from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.encounters import Encounters
 from rigid_sim_ros.engine.flight import Flights
@@ -43,6 +44,7 @@ class Exact:
         self._acceleration = world.acceleration(state.force)
         self._flights = Flights(world.bodies.inertia)
         self._touches = Touches(world, self._flights, state)
+        self._cascade = Cascade()
         self._encounters = Encounters(world, self._flights)
         self._islands = Islands(world, self._flights)
         self._read_ahead = ReadAhead(self._flights, world)
@@ -126,13 +128,17 @@ class Exact:
 
     def _touch(self, time, body_a, body_b):
         """Resolve the touch of pairs (p,) at `time` [s]; return whether any of it lasts."""
+        resolve = self._touches.resolve
+        ended = self._cascade.ended(time, body_a, body_b)
+        if ended is not None:
+            (body_a, body_b), resolve = ended, self._touches.settle
         struck = np.array(sorted({index for index in (*body_a.tolist(), *body_b.tolist())
                                   if index < self._world.bodies.moving_count}))
         woken = self._islands.wake(struck)
         if len(woken):
             struck = np.union1d(struck, woken)
             body_a, body_b = self._with_supports(time, woken, body_a, body_b)
-        touch = self._touches.resolve(time, struck, body_a, body_b)
+        touch = resolve(time, struck, body_a, body_b)
         self._flights.begin(struck, time, touch.position, touch.orientation, touch.linear,
                             touch.angular, self._acceleration[:, struck],
                             self._torque[:, struck])

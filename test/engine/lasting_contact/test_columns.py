@@ -20,7 +20,10 @@ from island_run import body, IslandRun
 
 import numpy as np
 
+import pytest
+
 from rigid_sim_ros.engine.lasting_contact.pile import pile_contacts
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES
 from rigid_sim_ros.engine.shapes import Cube
 
 EDGE, SPEED, GAP = 0.2, 1.0, 1e-4
@@ -78,6 +81,16 @@ def test_newtons_method_is_given_up_where_it_does_not_pay(monkeypatch):
     while len(solutions) < 20:
         run.step()
     assert set(Counter(tried).values()) <= {3, 4}
+
+
+@pytest.mark.parametrize('more', [0, 1])
+def test_newtons_method_leaves_large_groups_alone(monkeypatch, more):
+    """They are for the gradient."""
+    tried = []
+    monkeypatch.setattr(pile_contacts, 'newton_forces',
+                        lambda *arguments: (tried.append(arguments), (None, 1))[1])
+    columns(1, MOST_BODIES + more).run(2 / 240)
+    assert bool(tried) == (more == 0)
 
 
 def test_newtons_method_goes_on_for_whom_it_pays(monkeypatch):

@@ -29,10 +29,14 @@ from rigid_sim_ros.engine.lasting_contact.automaton.ball_attitude import turned_
 from rigid_sim_ros.engine.lasting_contact.automaton.ball_resistance import stopped
 from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import ContactState
 from rigid_sim_ros.engine.lasting_contact.automaton.dormand_prince import Step
-from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import normalized, ORIENTATION
+from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import (
+    normalized, ORIENTATION, SPIN, VELOCITY)
 
 TOLERANCE = 1e-9
 """Of length, speed and angle: the error allowed in a step."""
+
+SLOWER = 1e-3
+"""Of its speed: the least the scale of speed is for that. Without gravity there is no other."""
 
 PIVOTING = 1e-2
 """How much of that where nothing slides: what tips about a point or an edge lets errors grow."""
@@ -82,9 +86,9 @@ class Automaton(ContactState):
         self._longest = self._size = LONGEST * scales.length ** 0.5
         self._taken = None
         """The size [s] and the error of the last step, if it was one of the same motion."""
-        rate = scales.speed / scales.length
+        speed = max(scales.speed, SLOWER * self._speed()) or 1.0
         self._weights = [1 / (TOLERANCE * unit) for unit in (
-            *[scales.length] * 3, *[1.0] * 4, *[scales.speed] * 3, *[rate] * 3)]
+            *[scales.length] * 3, *[1.0] * 4, *[speed] * 3, *[speed / scales.length] * 3)]
         if body.is_ball:
             # nothing depends on its attitude, which follows from the spin
             self._weights[ORIENTATION] = [0.0] * 4
@@ -116,13 +120,18 @@ class Automaton(ContactState):
         accelerated by more than `allowed` [m/s^2]. What turns at its turning point is not.
         """
         body = self.body
-        vx, vy, vz, wx, wy, wz = map(abs, self.now[7:])
-        if max(vx, vy, vz, body.radius * max(wx, wy, wz)) > slow or not self.closed:
+        if self._speed() > slow or not self.closed:
             return False
+        wx, wy, wz = map(abs, self.now[SPIN])
         if body.rolling and max(wx, wy) > 0.0 or body.pivoting and wz > 0.0:
             # its stop is an event
             return False
         return self._balanced(self.rates([*self.now[:7], *[0.0] * 6]), allowed)
+
+    def _speed(self):
+        """Return a bound of the speed now [m/s] of any point, but for a factor of two or so."""
+        return max(*map(abs, self.now[VELOCITY]),
+                   self.body.radius * max(map(abs, self.now[SPIN])))
 
     def _stays(self):
         """Return whether the body does not move, nor will."""
