@@ -111,7 +111,6 @@ class Touches:
         self._place(time, indices)
         bodies = self._world.bodies
         size = np.minimum(bodies.bounding_radius[body_a], bodies.bounding_radius[body_b])
-<<<<<<< HEAD
         margin = TOUCH_MARGIN
         contacts = self._find(body_a, body_b, margin * size)
         while not contacts.count:
@@ -120,15 +119,10 @@ class Touches:
             if margin > MOST_MARGIN:
                 raise ArithmeticError(f'bodies are too fast to tell where they touch at {time} s')
             contacts = self._find(body_a, body_b, margin * size)
-        stays = self._apply_all(time, contacts)
-=======
-        self._world.work.narrow_phases += len(body_a)
-        return find_contacts(bodies, body_a, body_b, self._position, self._orientation,
-                             TOUCH_MARGIN * size)
+        return contacts
 
     def _touch(self, indices, stays):
         """Return the `Touch` of moving bodies (m,) given which of all (n,) bool stay together."""
->>>>>>> 2de06a1 (End bounces that have no end, and land without gravity)
         return Touch(*(values.take(indices, axis=-1) for values in (
             self._position, self._orientation, self._linear, self._angular, stays)))
 
