@@ -24,6 +24,8 @@ cannot be told apart any more, and gaps are far below those that count as none.
 
 import numpy as np
 
+from rigid_sim_ros.engine.graph import connected
+
 INSTANT = 1e-12
 """Longest time [s] between touches at one instant: instants are found some 1e-13 as well."""
 
@@ -38,10 +40,19 @@ each to the next, do so in fewer touches of each pair.
 
 
 class Cascade:
-    """The touches at one instant."""
+    """
+    The touches at one instant.
 
-    def __init__(self):
+    Parameters
+    ----------
+    moving_count : int
+        Bodies with an index below it move.
+
+    """
+
+    def __init__(self, moving_count):
         """See the class."""
+        self._moving_count = moving_count
         self._until = -np.inf
         self._counts = {}
 
@@ -49,8 +60,9 @@ class Cascade:
         """
         Return the pairs a, b (q,) that bounce without end at `time` [s], or None.
 
-        That is all that have touched at this instant, if one of the pairs (p,) that touch now has
-        done so too often.
+        If one of the pairs (p,) that touch now has done so too often at this instant, that is all
+        that have touched at it and hang together with such a one. What else touches now is left
+        for the next time, as it has nothing to do with them.
         """
         if time > self._until:
             self._counts.clear()
@@ -60,4 +72,11 @@ class Cascade:
             count = self._counts.get(pair, 0) + 1
             self._counts[pair] = count
             often = often or count > TIMES
-        return np.array(sorted(self._counts)).T if often else None
+        return self._endless() if often else None
+
+    def _endless(self):
+        """Return the pairs a, b (q,) that hang together with one that has touched too often."""
+        pairs = sorted(self._counts)
+        return np.array([pairs[place] for group in connected(pairs, self._moving_count)
+                         if max(self._counts[pairs[place]] for place in group) > TIMES
+                         for place in group]).T

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 
 from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.cascade import Cascade, INSTANT, TIMES
 from rigid_sim_ros.engine.model import Body, Material, Plane, Scene
 from rigid_sim_ros.engine.shapes import Cube, Sphere
 
@@ -88,15 +89,29 @@ def test_bounces_without_end_end(mass, restitution, law):
     np.testing.assert_allclose(simulation.position[:, 0], (0.1, 0.3), atol=1e-9)
 
 
+def test_what_touches_elsewhere_at_the_same_instant_rebounds():
+    """A third body hits the wall, a meter aside, when the others bounce for the ninth time."""
+    cascade, wall = Cascade(3), 3
+    for number in range(2 * TIMES):
+        pair = np.array(((0, wall), (0, 1))[number % 2])[:, None]
+        assert cascade.ended(1.0 + 1e-14 * number, *pair) is None
+    a, b = cascade.ended(1.0, np.array((0, 2)), np.array((wall, wall)))
+    assert list(zip(a, b)) == [(0, 1), (0, wall)]
+    assert cascade.ended(1.0, np.array((2,)), np.array((wall,))) is None
+    assert cascade.ended(1.0 + 2 * INSTANT, np.array((0,)), np.array((wall,))) is None
+
+
 @pytest.mark.parametrize('shape', [Cube(0.2), Sphere(0.1)])
-def test_landing_without_gravity(shape):
+@pytest.mark.parametrize('along', [2.0, 0.0])
+def test_landing_without_gravity(shape, along):
     """What does not rebound slides on the plane as fast as friction in the impact leaves it."""
     material = Material(restitution=0.0, friction=0.5)
     simulation = Simulation(Scene(
         bodies=(Body('lands', shape, 1.0, shape.inertia(1.0), position=(0.0, 0.0, 0.5),
-                     velocity=(2.0, 0.0, -1.0), material=material),),
+                     velocity=(along, 0.0, -1.0), material=material),),
         planes=(Plane('ground', (0.0, 0.0, 1.0), 0.0, material),), gravity=(0.0, 0.0, 0.0)))
     simulation.advance(2.0)
-    np.testing.assert_allclose(simulation.linear_velocity[0], (1.5, 0.0, 0.0), atol=1e-12)
-    np.testing.assert_allclose(simulation.position[0], (0.4 * 2.0 + 1.6 * 1.5, 0.0, 0.1),
+    left = max(along - 0.5, 0.0)
+    np.testing.assert_allclose(simulation.linear_velocity[0], (left, 0.0, 0.0), atol=1e-12)
+    np.testing.assert_allclose(simulation.position[0], (0.4 * along + 1.6 * left, 0.0, 0.1),
                                atol=1e-12)

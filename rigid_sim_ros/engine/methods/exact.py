@@ -44,7 +44,7 @@ class Exact:
         self._acceleration = world.acceleration(state.force)
         self._flights = Flights(world.bodies.inertia)
         self._touches = Touches(world, self._flights, state)
-        self._cascade = Cascade()
+        self._cascade = Cascade(world.bodies.moving_count)
         self._encounters = Encounters(world, self._flights)
         self._islands = Islands(world, self._flights)
         self._read_ahead = ReadAhead(self._flights, world)

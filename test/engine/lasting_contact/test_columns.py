@@ -22,6 +22,7 @@ import numpy as np
 
 import pytest
 
+from rigid_sim_ros.engine.lasting_contact import Island
 from rigid_sim_ros.engine.lasting_contact.pile import pile_contacts
 from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES
 from rigid_sim_ros.engine.shapes import Cube
@@ -81,6 +82,21 @@ def test_newtons_method_is_given_up_where_it_does_not_pay(monkeypatch):
     while len(solutions) < 20:
         run.step()
     assert set(Counter(tried).values()) <= {3, 4}
+
+
+def test_a_pile_that_is_made_anew_knows_whom_newtons_method_fails(monkeypatch):
+    """Three columns are not tried again at once when their island has been found anew."""
+    tried = []
+    monkeypatch.setattr(pile_contacts, 'newton_forces',
+                        lambda *arguments: (tried.append(arguments), (None, 20))[1])
+    run = columns(3, 10)
+    run.step()
+    assert len(tried) == 3
+    before = run.island
+    run.island = Island(run.world, before.members, before.pairs.pairs_a, before.pairs.pairs_b,
+                        [before])
+    run.step()
+    assert len(tried) == 3
 
 
 @pytest.mark.parametrize('more', [0, 1])

@@ -27,8 +27,7 @@ from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.budget import Budget, SAVED
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.memory import Impulses, Quiet
-from rigid_sim_ros.engine.lasting_contact.pile.patience import (
-    newton_pays, Patience, WAITS)
+from rigid_sim_ros.engine.lasting_contact.pile.patience import newton_pays, Patience, WAITS
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
 from rigid_sim_ros.engine.model import Material
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere

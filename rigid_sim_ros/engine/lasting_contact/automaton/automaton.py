@@ -129,7 +129,7 @@ class Automaton(ContactState):
         return self._balanced(self.rates([*self.now[:7], *[0.0] * 6]), allowed)
 
     def _speed(self):
-        """Return a bound of the speed now [m/s] of any point, but for a factor of two or so."""
+        """Return the largest component of velocity now [m/s], of the centre or by turning."""
         return max(*map(abs, self.now[VELOCITY]),
                    self.body.radius * max(map(abs, self.now[SPIN])))
 
