@@ -34,7 +34,7 @@ def meeting_time(trial, contacts, rows, overlap):
     """
     Return the first time [s] at which one of some contacts closes, or None.
 
-    None means that these features do not tell: they touch from the start on, or are round.
+    Features that touch from the start on, or are round, do not tell; None means that none does.
 
     Parameters
     ----------
@@ -52,21 +52,18 @@ def meeting_time(trial, contacts, rows, overlap):
     first = inf
     for row in rows:
         gap = _gap(trial, end, contacts, row)
-        if gap is None:
-            return None
-        time = _root(gap, trial.step, contacts.separation.item(row), overlap)
-        if time is None:
-            return None
-        first = min(first, time)
-    return first
+        if gap is not None:
+            time = _root(gap, trial.step, contacts.separation.item(row), overlap)
+            first = min(first, time)
+    return None if first == inf else first
 
 
 def _root(gap, step, gap_high, closed):
-    """Return when a gap closes that is negative after the step, None if `closed` at its start."""
+    """Return when a gap closes that is negative after the step, inf if `closed` at its start."""
     low, gap_low, high = 0.0, gap(0.0), step
     # what touches has a gap of rounding, and its sign may not decide
     if gap_low <= closed:
-        return None
+        return inf
     side, time = 0, low
     for _ in range(_ROUNDS):
         before, time = time, (low * gap_high - high * gap_low) / (gap_high - gap_low)

@@ -34,7 +34,7 @@ _MAX_ROUNDS = 50
 _ROUNDING = 1e-13
 """Of the step: an interval that is not divided any more."""
 
-_GAIN = 0.5
+_GAIN = 0.75
 """
 An overlap that shrinks to no less than this part does not come from its time: it is one that the
 step would close softly, and did not quite as it is not straight.
@@ -50,6 +50,18 @@ def arriving(motion, near, gap, speed):
     if not closed.any():
         return np.zeros(0, dtype=int)
     return np.flatnonzero(closed & (near.approach(motion) > speed))
+
+
+def hitting(motion, near, gap, limits, before):
+    """
+    Return the contacts (m,) int that overlap by more than a gap [m] and approach, or are deep.
+
+    What turns fast dips in and is on its way out again: deeper than what counts as closed, and
+    than any contact was `before` the step, it has hit in whatever direction it moves now.
+    """
+    arrived = arriving(motion, near, -gap, 0.5 * limits.impact_speed)
+    deepest = max(limits.touch_gap, -float(before.contacts.separation.min(initial=0.0)))
+    return np.union1d(arrived, near.closed(-deepest))
 
 
 def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
@@ -84,7 +96,7 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
         tried = first_half(trial.free, trial.start, near, time, limits)
         motion = tried.end()
         around = island.near(motion, margin)
-        hits = arriving(motion, around, -overlap, speed)
+        hits = hitting(motion, around, overlap, limits, near)
         if hits.size:
             before, depth = depth, -float(around.contacts.separation[hits].min())
             high, latest = time, (tried, motion, around)

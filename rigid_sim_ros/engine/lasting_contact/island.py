@@ -119,15 +119,17 @@ class Island:
 
     def reach(self, free, motion, duration):
         """Return how far [m] any point of the bodies (n,) comes in a time [s] without impacts."""
-        turning = self._turning.speeds(motion.orientation, motion.angular)
-        return duration * (_length(motion.linear) + turning
+        return duration * (_length(motion.linear) + self.turning(motion)
                            + duration * _length(free.acceleration))
+
+    def turning(self, motion):
+        """Return bounds (n,) of how fast [m/s] the points of bodies go about their centres."""
+        return self._turning.speeds(motion.orientation, motion.angular)
 
     def closing(self, motion):
         """Return bounds (p,) of how fast [m/s] the points of pairs approach or pass each other."""
         a, b = self.pairs.pairs_a, self.pairs.pairs_b
-        turning = self._turning.speeds(motion.orientation, motion.angular)
-        linear = motion.linear
+        turning, linear = self.turning(motion), motion.linear
         return _length(linear[:, b] - linear[:, a]) + turning[a] + turning[b]
 
     def find_contacts(self, motion, margin):

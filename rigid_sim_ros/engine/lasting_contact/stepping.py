@@ -25,18 +25,22 @@ from rigid_sim_ros.engine.lasting_contact.step import (
 
 _MOST_PARTS = 1000
 
+_MOST_TURN = 0.5
+"""[rad] in a part: what dips in and out again within goes in by 3 % of its radius at most."""
+
 
 def advance_in_steps(island, state, start, duration):
     """
     Advance an `Island` by `duration` [s] from `start` [s]; return (closed contacts, resting).
 
     The duration is one step, or equal parts if something is so fast that it could pass through
-    something thin. The members' columns of the `State` of the whole scene are replaced.
+    something thin, or hit something and be out of it again. The members' columns of the `State`
+    of the whole scene are replaced.
     """
     free = island.free_motion(state)
     scales = island.scales(free)
     motion = island.gather(state)
-    parts = parts_of(island, free, motion, duration)
+    parts = max(parts_of(island, free, motion, duration), _turns_of(island, motion, duration))
     step = duration / parts
     limits = Limits.of(scales, step)
     near = island.near(motion, limits.margin(step))
@@ -62,8 +66,7 @@ def _advance(island, free, scales, limits, motion, near, time, step):
         trial = first_half(free, motion, near, left, limits)
         end = trial.end()
         end_near = island.near(end, margin)
-        hits = cut.arriving(end, end_near, -units.IMPACT_GAP * scales.length,
-                            0.5 * limits.impact_speed)
+        hits = cut.hitting(end, end_near, units.IMPACT_GAP * scales.length, limits, near)
         if not hits.size or number == 2 * units.MAX_CUTS:
             break
         trial, motion, near = cut.first_impact(island, limits, overlap, margin, trial, near,
@@ -109,3 +112,9 @@ def parts_of(island, free, motion, duration):
     way = duration * (island.closing(motion) + duration * pull)
     needed = (way / thickness).max(initial=0.0)
     return int(min(max(1.0, np.ceil(needed)), _MOST_PARTS))
+
+
+def _turns_of(island, motion, duration):
+    """Return how many parts a step needs so that in none anything turns too far."""
+    turning = duration * island.turning(motion) / island.bodies.bounding_radius
+    return int(min(max(1.0, np.ceil(turning.max() / _MOST_TURN)), _MOST_PARTS))

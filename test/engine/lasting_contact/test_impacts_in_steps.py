@@ -1,0 +1,83 @@
+# Copyright 2026 The rigid_sim_ros authors
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Impacts in the steps of few bodies: none is missed, and each is at its instant."""
+
+from dataclasses import replace
+from math import radians
+
+from island_run import body, GRAVITY, ground, IslandRun
+
+import numpy as np
+
+import pytest
+
+from rigid_sim_ros.engine import Simulation
+from rigid_sim_ros.engine.lasting_contact.arrival import meeting_time
+from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits
+from rigid_sim_ros.engine.model import Material, Plane, Scene
+from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
+
+STEP = 1 / 60
+ELASTIC = Material(restitution=1.0, friction=0.0)
+
+
+@pytest.mark.parametrize('degrees', (60, 80, 95, 110, 130, 150, 175))
+def test_what_dips_in_and_out_again_has_hit(degrees):
+    """
+    A rod that turns over a plane, and would be out of it at the end of the step, hits it.
+
+    A wall within reach keeps it from being alone with the plane. Between its one impact and the
+    end of the step it flies: the same by formula is the reference.
+    """
+    rod = body('rod', Box((0.3, 0.03, 0.03)), position=(0.0, 0.0, 0.1), material=ELASTIC,
+               angular_velocity=(0.0, radians(degrees) / STEP, 0.0))
+    planes = (ground(material=ELASTIC),
+              Plane('wall', normal=(-1.0, 0.0, 0.0), offset=-0.2, material=ELASTIC))
+    run = IslandRun([rod], planes, step=STEP, gravity=(0.0, 0.0, 0.0))
+    flown = Simulation(Scene((rod,), planes, (0.0, 0.0, 0.0)), max_step=STEP)
+    run.step()
+    flown.advance(STEP)
+    assert flown.work.impacts == run.world.work.impacts == 1
+    assert np.abs(run.state.position[:, 0] - flown.position[0]).max() < 1e-9
+    assert np.abs(run.state.linear_velocity[:, 0] - flown.linear_velocity[0]).max() < 1e-9
+
+
+def test_what_touches_softly_hides_no_arrival():
+    """A cube that touches from the start does not say when another one lands."""
+    fall, gap, step = (0.0, 0.0, -1.0), 1e-3, 0.01
+    run = IslandRun([body('low', Cube(0.2), position=(0.0, 0.0, 0.1), velocity=fall),
+                     body('high', Cube(0.2), position=(0.5, 0.0, 0.1 + gap), velocity=fall)],
+                    step=step, gravity=(0.0, 0.0, -1e-9))
+    island = run.island
+    free, motion = island.free_motion(run.state), island.gather(run.state)
+    limits = Limits.of(island.scales(free), step)
+    trial = first_half(free, motion, island.near(motion, limits.margin(step)), step, limits)
+    contacts = island.find_contacts(trial.end(), 0.0)
+    low, high = (np.flatnonzero(contacts.body_a == index).tolist() for index in (0, 1))
+    assert len(low) == len(high) == 4
+    assert meeting_time(trial, contacts, low + high, 1e-12) == pytest.approx(gap, rel=1e-6)
+    assert meeting_time(trial, contacts, low, 1e-12) is None
+
+
+def test_what_slows_down_hits_when_it_arrives():
+    """A ball that rises to a ceiling, slowed by gravity all the step, hits at once."""
+    speed, gap = 2 * GRAVITY * STEP, 1e-8
+    ball = body('ball', Sphere(0.1), position=(0.1, 0.0, -0.1 - gap), velocity=(0.0, 0.0, speed))
+    planes = (Plane('ceiling', normal=(0.0, 0.0, -1.0)), Plane('wall', normal=(1.0, 0.0, 0.0)))
+    run = IslandRun([replace(ball, material=ELASTIC)],
+                    [replace(plane, material=ELASTIC) for plane in planes], step=STEP)
+    run.step()
+    first, = run.world.events.take()
+    assert first['time'] == pytest.approx(gap / speed, rel=1e-6)
