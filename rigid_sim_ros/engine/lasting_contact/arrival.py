@@ -58,6 +58,42 @@ def meeting_time(trial, contacts, rows, overlap):
     return None if first == inf else first
 
 
+def dipping_time(trial, contacts, rows, parting, overlap, speed):
+    """
+    Return the first time [s] at which one of some contacts closed that is open again, or None.
+
+    Parameters
+    ----------
+    trial, contacts, rows, overlap :
+        As for `meeting_time`; those asked for part at the end.
+    parting : (k,) [m/s]
+        How fast each contact parts then.
+    speed : float [m/s]
+        What closes slower is not meant.
+
+    """
+    end = trial.end()
+    first = inf
+    for row in rows:
+        gap = _gap(trial, end, contacts, row)
+        if gap is not None:
+            lowest = _lowest(gap, trial.step, contacts.separation.item(row), parting.item(row))
+            depth = -gap(lowest)
+            if depth > overlap:
+                time = _root(gap, lowest, -depth, overlap)
+                # a parabola falls at twice its mean speed
+                if 2.0 * depth > speed * (lowest - time):
+                    first = min(first, time)
+    return None if first == inf else first
+
+
+def _lowest(gap, step, gap_high, rate_high):
+    """Return when a gap is least that grows at a rate after the step, if it is a parabola."""
+    growth = rate_high * step
+    curvature = gap(0.0) - gap_high + growth
+    return step * (1.0 - 0.5 * growth / curvature) if curvature > 0.5 * growth else 0.0
+
+
 def _root(gap, step, gap_high, closed):
     """Return when a gap closes that is negative after the step, inf if `closed` at its start."""
     low, gap_low, high = 0.0, gap(0.0), step

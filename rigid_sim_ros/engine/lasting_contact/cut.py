@@ -26,7 +26,7 @@ from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.friction import mixed_restitution
 from rigid_sim_ros.engine.impacts import resolve_impact
 from rigid_sim_ros.engine.lasting_contact import scales as units
-from rigid_sim_ros.engine.lasting_contact.arrival import meeting_time
+from rigid_sim_ros.engine.lasting_contact.arrival import dipping_time, meeting_time
 from rigid_sim_ros.engine.lasting_contact.energy_balance import balanced, ending_of
 from rigid_sim_ros.engine.lasting_contact.step import first_half, Trial
 
@@ -52,19 +52,35 @@ def arriving(motion, near, gap, speed):
     return np.flatnonzero(closed & (near.approach(motion) > speed))
 
 
-def hitting(motion, near, gap, limits, before):
+def impact_time(trial, end_near, scales, limits, dip):
+    """
+    Return about when [s] the first impact is in the step of a `Trial`, None if there is none.
+
+    That is of contacts near its end which overlap there and approach, or are deep, or have been
+    closed in between: what turns fast dips in and out again, by `dip` [m] at most.
+    """
+    end, contacts, overlap = trial.end(), end_near.contacts, units.OVERLAP * scales.length
+    hits = _hitting(end, end_near, units.IMPACT_GAP * scales.length, limits, trial.near)
+    if hits.size:
+        return meeting_time(trial, contacts, hits.tolist(), overlap) or 0.5 * trial.step
+    speed, parting = 0.5 * limits.impact_speed, -end_near.approach(end)
+    rows = np.flatnonzero((parting > speed) & (contacts.separation < dip)).tolist()
+    return dipping_time(trial, contacts, rows, parting, overlap, speed)
+
+
+def _hitting(motion, near, gap, limits, before):
     """
     Return the contacts (m,) int that overlap by more than a gap [m] and approach, or are deep.
 
-    What turns fast dips in and is on its way out again: deeper than what counts as closed, and
-    than any contact was `before` the step, it has hit in whatever direction it moves now.
+    Deeper than what counts as closed, and than any contact was `before` the step, it has hit in
+    whatever direction it moves now.
     """
     arrived = arriving(motion, near, -gap, 0.5 * limits.impact_speed)
     deepest = max(limits.touch_gap, -float(before.contacts.separation.min(initial=0.0)))
     return np.union1d(arrived, near.closed(-deepest))
 
 
-def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
+def first_impact(island, limits, overlap, margin, trial, time):
     """
     Return (the step so far, motion, contacts near it) at the first impact in a step.
 
@@ -78,16 +94,13 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
         Gap, positive or negative, that counts as none; up to which contacts are found.
     trial : step.Trial
         The step.
-    near, end_near : Near
-        The contacts at its start and at its end.
-    hits : (m,) int
-        Those at its end that overlap and approach.
+    time : float [s]
+        About when it is.
 
     """
     speed = 0.5 * limits.impact_speed
-    low, high, latest, depth = 0.0, trial.step, None, np.inf
+    near, low, high, latest, depth = trial.near, 0.0, trial.step, None, np.inf
     shortest = SHORTEST * trial.step
-    time = meeting_time(trial, end_near.contacts, hits.tolist(), overlap)
     for _ in range(_MAX_ROUNDS):
         if time is None or not low < time < high:
             time = 0.5 * (low + high)
@@ -96,7 +109,7 @@ def first_impact(island, limits, overlap, margin, trial, near, end_near, hits):
         tried = first_half(trial.free, trial.start, near, time, limits)
         motion = tried.end()
         around = island.near(motion, margin)
-        hits = hitting(motion, around, overlap, limits, near)
+        hits = _hitting(motion, around, overlap, limits, near)
         if hits.size:
             before, depth = depth, -float(around.contacts.separation[hits].min())
             high, latest = time, (tried, motion, around)

@@ -33,31 +33,38 @@ def advance_in_steps(island, state, start, duration):
     """
     Advance an `Island` by `duration` [s] from `start` [s]; return (closed contacts, resting).
 
-    The duration is one step, or equal parts if something is so fast that it could pass through
+    The duration is one step, or parts if something is so fast that it could pass through
     something thin, or hit something and be out of it again. The members' columns of the `State`
     of the whole scene are replaced.
     """
     free = island.free_motion(state)
     scales = island.scales(free)
     motion = island.gather(state)
-    parts = max(parts_of(island, free, motion, duration), _turns_of(island, motion, duration))
-    step = duration / parts
-    limits = Limits.of(scales, step)
-    near = island.near(motion, limits.margin(step))
-    for part in range(parts):
-        motion, near = _advance(island, free, scales, limits, motion, near, start + part * step,
-                                step)
+    left, limits = duration, None
+    while left > 0.0:
+        # an impact may have made something faster, and little may be left
+        step = left / _parts(island, free, motion, left)
+        limits = limits or Limits.of(scales, step)
+        motion, near, remains = _advance(island, free, scales, limits, motion,
+                                         start + duration - left, step)
         island.world.work.contact_steps += 1
+        left -= step - remains
     touching = near.closed(limits.touch_gap)
     resting = at_rest(free, scales, motion, near, touching)
     island.scatter(motion.stopped() if resting else motion, state)
     return near.contacts.select(touching), resting
 
 
-def _advance(island, free, scales, limits, motion, near, time, step):
-    """Return (motion, contacts near it) after a step [s], cut where something hits."""
+def _advance(island, free, scales, limits, motion, time, step):
+    """
+    Return (motion, contacts near it, time left) after a step [s], cut where something hits.
+
+    Time [s] is left if an impact has made something turn so fast that the rest takes parts.
+    """
     overlap = units.OVERLAP * scales.length
-    margin = limits.margin(step)
+    dip = _dip(island, motion, step)
+    margin = limits.margin(step) + dip
+    near = island.near(motion, margin)
     if cut.arriving(motion, near, overlap, limits.impact_speed).size:
         motion = cut.resolve(Trial.of_no_time(free, motion, near), motion, near, scales, limits,
                              time, rebounds=True)
@@ -66,15 +73,17 @@ def _advance(island, free, scales, limits, motion, near, time, step):
         trial = first_half(free, motion, near, left, limits)
         end = trial.end()
         end_near = island.near(end, margin)
-        hits = cut.hitting(end, end_near, units.IMPACT_GAP * scales.length, limits, near)
-        if not hits.size or number == 2 * units.MAX_CUTS:
+        hit = cut.impact_time(trial, end_near, scales, limits, dip)
+        if hit is None or number == 2 * units.MAX_CUTS:
+            left = 0.0
             break
-        trial, motion, near = cut.first_impact(island, limits, overlap, margin, trial, near,
-                                               end_near, hits)
+        trial, motion, near = cut.first_impact(island, limits, overlap, margin, trial, hit)
         left -= trial.step
         motion = cut.resolve(trial, motion, near, scales, limits, time + step - left,
                              rebounds=number < units.MAX_CUTS)
         if left <= cut.SHORTEST * step:
+            left = 0.0
+        if not left or _turns(island, motion, left) > 1:
             trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
     end, end_near = _separated(end, end_near, scales, margin)
@@ -85,7 +94,7 @@ def _advance(island, free, scales, limits, motion, near, time, step):
     ending = ending_of(trial, end, end_near, closed)
     motion, near = balanced(ending, limits.slide_speed)
     island.remember(near, margin)
-    return motion, near
+    return motion, near, left
 
 
 def _separated(motion, near, scales, margin):
@@ -110,11 +119,26 @@ def parts_of(island, free, motion, duration):
                          np.minimum(half[a], half[b]))
     pull = 2 * np.sqrt(rotation.dot(free.acceleration, free.acceleration).max())
     way = duration * (island.closing(motion) + duration * pull)
-    needed = (way / thickness).max(initial=0.0)
-    return int(min(max(1.0, np.ceil(needed)), _MOST_PARTS))
+    return _count((way / thickness).max(initial=0.0))
 
 
-def _turns_of(island, motion, duration):
+def _turns(island, motion, duration):
     """Return how many parts a step needs so that in none anything turns too far."""
     turning = duration * island.turning(motion) / island.bodies.bounding_radius
-    return int(min(max(1.0, np.ceil(turning.max() / _MOST_TURN)), _MOST_PARTS))
+    return _count(turning.max() / _MOST_TURN)
+
+
+def _dip(island, motion, step):
+    """Return how far [m] two bodies that turn come together and part again in a step, at most."""
+    turning = step * island.turning(motion)
+    return 2 * float((turning * turning / (8 * island.bodies.bounding_radius)).max())
+
+
+def _parts(island, free, motion, duration):
+    """Return how many parts a step needs for either reason."""
+    return max(parts_of(island, free, motion, duration), _turns(island, motion, duration))
+
+
+def _count(parts):
+    """Return a whole number of parts, no less than needed but for rounding."""
+    return int(min(max(1.0, np.ceil(parts * (1 - 1e-9))), _MOST_PARTS))

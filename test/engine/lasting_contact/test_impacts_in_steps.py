@@ -81,3 +81,26 @@ def test_what_slows_down_hits_when_it_arrives():
     run.step()
     first, = run.world.events.take()
     assert first['time'] == pytest.approx(gap / speed, rel=1e-6)
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_throws_fly_as_by_formula(seed):
+    """
+    Elastic cubes thrown hard on the ground, turning fast after: the same as by impacts in flight.
+
+    In long steps, in which many hit twice.
+    """
+    random = np.random.default_rng(seed)
+    attitude, spin = random.normal(size=4), random.normal(size=3)
+    cube = body('cube', Cube(0.2), position=(0.0, 0.0, 0.22), material=ELASTIC,
+                orientation=tuple(attitude / np.linalg.norm(attitude)),
+                velocity=(0.0, 0.0, -10.0), angular_velocity=tuple(10.0 * spin))
+    planes = (ground(material=ELASTIC),
+              Plane('wall', normal=(-1.0, 0.0, 0.0), offset=-0.25, material=ELASTIC))
+    run = IslandRun([cube], planes, step=STEP)
+    flown = Simulation(Scene((cube,), planes[:1], (0.0, 0.0, -GRAVITY)), max_step=STEP)
+    for _ in range(3):
+        run.step()
+        flown.advance(STEP)
+    assert flown.work.impacts
+    assert np.abs(run.state.position[:, 0] - flown.position[0]).max() < 1e-7
