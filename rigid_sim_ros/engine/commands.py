@@ -16,6 +16,7 @@
 
 from difflib import get_close_matches
 from math import inf
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +32,18 @@ class CommandError(ValueError):
 def shown(value):
     """Return a value as one short line of text."""
     return ' '.join(repr(value).split())[:80]
+
+
+def duration_in_seconds(value):
+    """Return a real number, or an array of shape () with one, as a float; ValueError if not."""
+    number = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
+    try:
+        seconds = float(number) if isinstance(number, (float, Real)) else -1.0
+    except OverflowError:
+        seconds = inf
+    if not 0 <= seconds < inf:
+        raise ValueError(f'duration is {shown(value)} s; allowed: a finite number, 0 or more')
+    return seconds
 
 
 def column_of_moving(name, columns, moving_names):

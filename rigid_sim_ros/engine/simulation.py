@@ -25,7 +25,8 @@ import numpy as np
 from rigid_sim_ros.engine.bodies import bodies_of, names_of
 from rigid_sim_ros.engine.body_checks import check_body
 from rigid_sim_ros.engine.commands import (
-    column_of_moving, CommandError, index_rows, shown, unit_quaternion, vector, vector_rows)
+    column_of_moving, CommandError, duration_in_seconds, index_rows, shown, unit_quaternion,
+    vector, vector_rows)
 from rigid_sim_ros.engine.events import EventLog, GONE, renumbered
 from rigid_sim_ros.engine.lasting_pairs import LastingPairs
 from rigid_sim_ros.engine.methods import METHODS
@@ -97,12 +98,10 @@ class Simulation(Readings):
         ArithmeticError and numpy.linalg.LinAlgError say that a motion has outgrown the numbers it
         is computed with, as speeds of 1e30 m/s do: only `reset` helps then.
         """
-        if not (isinstance(duration, (float, Real)) and 0 <= duration < inf):
-            raise ValueError(
-                f'duration is {shown(duration)} s; allowed: a finite number, 0 or more')
-        if duration > 0:
-            self._duration = duration
-            self._method.advance(float(duration), until_collision)
+        seconds = duration_in_seconds(duration)
+        if seconds > 0:
+            self._duration = seconds
+            self._method.advance(seconds, until_collision)
         self._collisions = self._events.take()
 
     def expect_times(self, coming_times):

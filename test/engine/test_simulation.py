@@ -14,6 +14,8 @@
 
 """The simulation as its users see it: motion by closed form, commands, collisions, errors."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -222,10 +224,29 @@ def test_what_is_no_scene_is_refused():
         Simulation('ten_cubes')
 
 
-@pytest.mark.parametrize('duration', [-1.0, float('nan'), float('inf'), '1'])
+@pytest.mark.parametrize('duration', [
+    np.array(0.5), np.float32(0.5), np.float64(0.5), np.longdouble(0.5), Fraction(1, 2)])
+def test_every_real_number_is_a_duration(duration):
+    """Whatever its type, one half is one half."""
+    simulation = Simulation(Scene())
+    simulation.advance(duration)
+    assert simulation.time == 0.5
+
+
+@pytest.mark.parametrize('duration', [2, np.array(2), np.int8(2), np.uint64(2)])
+def test_every_whole_number_is_a_duration(duration):
+    """Whatever its type, two is two."""
+    simulation = Simulation(Scene())
+    simulation.advance(duration)
+    assert simulation.time == 2.0
+
+
+@pytest.mark.parametrize('duration', [
+    -1.0, float('nan'), float('inf'), '1', None, 1j, 10**400, -10**400, np.array(-1),
+    np.array('1'), np.array(1j), np.array([0.1])])
 def test_bad_durations_are_refused(duration):
     """Time goes forward by finite amounts."""
-    with pytest.raises(ValueError, match='duration'):
+    with pytest.raises(ValueError, match=r'^duration is .*allowed: a finite number, 0 or more$'):
         Simulation(Scene()).advance(duration)
 
 
