@@ -148,13 +148,23 @@ def push_out(motion, near):
 
 
 def _turning(near, motion, step):
-    """Return what the turning of bodies and normals adds in half a step, (3, k), contact axes."""
+    """
+    Return what the turning of bodies and normals adds in half a step, (3, k), contact axes.
+
+    That is at most what turning takes off a point or a normal by a radian. Edges all but parallel
+    claim more: their crossing has run off them long before.
+    """
     if step * float(np.abs(motion.angular).max()) < _NO_TURN:
         return np.zeros((3, near.count))
+    island, contacts = near.island, near.contacts
     gamma_n, gamma_t = gap_acceleration_bias(
-        near.contacts, near.island.bodies, motion.position, motion.linear, motion.angular)
-    gamma = gamma_t + near.contacts.normal * gamma_n
-    return near.rows.components(0.5 * step * gamma).reshape(3, -1)
+        contacts, island.bodies, motion.position, motion.linear, motion.angular)
+    change = 0.5 * step * (gamma_t + contacts.normal * gamma_n)
+    turning, across = island.turning(motion), near.across(motion)
+    most = (np.sqrt(rotation.dot(across, across))
+            + turning.take(contacts.body_a) + turning.take(contacts.body_b))
+    change *= rotation.dot(change, change) <= most * most
+    return near.rows.components(change).reshape(3, -1)
 
 
 def _slip(across, closed, slide_speed):

@@ -104,3 +104,24 @@ def test_throws_fly_as_by_formula(seed):
         flown.advance(STEP)
     assert flown.work.impacts
     assert np.abs(run.state.position[:, 0] - flown.position[0]).max() < 1e-7
+
+
+@pytest.mark.parametrize('angle', (1e-2, 1e-4, 1e-6))
+@pytest.mark.parametrize('spin', ((0.0, 0.5, 0.0), (0.5, 0.0, 0.0), (0.1, 0.2, 0.3)))
+def test_edges_all_but_parallel_move_nothing(angle, spin):
+    """
+    What edges nearly along each other say of how their normal turns is not followed.
+
+    Two cubes pass each other without contact, corner to corner: they fall freely.
+    """
+    axis = np.sin(0.5 * angle) * np.array([1.0, 0.0, 1.0]) / 2 ** 0.5
+    place = np.array([0.203, 0.0, 0.203])
+    still = body('still', Cube(0.2))
+    passing = body('passing', Cube(0.2), position=tuple(place), angular_velocity=spin,
+                   orientation=(*axis.tolist(), float(np.cos(0.5 * angle))),
+                   velocity=(0.1, 0.0, 0.0))
+    run = IslandRun([still, passing], (), step=0.01, friction=0.5)
+    run.step()
+    fall = np.array([0.1, 0.0, -GRAVITY * 0.01])
+    assert np.abs(run.state.linear_velocity[:, 1] - fall).max() < 1e-12
+    assert np.abs(run.state.angular_velocity[:, 1] - spin).max() < 1e-12
