@@ -48,7 +48,7 @@ CROWD = 24
 """Bodies in lasting contact above which all of them are one pile."""
 
 CLOSED = 1e-6
-"""A sleeping body nearer than this part of the smaller one is touched."""
+"""Bodies nearer than this part of the smaller one touch, if nobody moves."""
 
 
 class Changes(NamedTuple):
@@ -214,7 +214,8 @@ class Islands:
         if crowd:
             return [self._island(members, a, b)], margin
         gap = separations(bodies, a, b, state.position, state.orientation) - reach[a] - reach[b]
-        near = gap <= skin
+        # what touches is hit by whoever hits the other, and reach is passed on but once
+        near = gap <= max(skin, CLOSED * bodies.bounding_radius[members].min())
         a, b = a[near], b[near]
         both = is_member[a] & is_member[b]
         labels = _with_the_many(component_labels(bodies.count, a[both], b[both]), members)
