@@ -30,7 +30,7 @@ _ROUNDING = 1e-14
 """Of the step: where the search ends."""
 
 
-def meeting_time(trial, contacts, rows, overlap):
+def meeting_time(trial, end, contacts, rows, overlap):
     """
     Return the first time [s] at which one of some contacts closes, or None.
 
@@ -40,15 +40,16 @@ def meeting_time(trial, contacts, rows, overlap):
     ----------
     trial : step.Trial
         The step.
+    end : Motion
+        At its end.
     contacts : Contacts
-        At its end; those asked for overlap.
+        There; those asked for overlap.
     rows : (m,) int
         Which are asked for.
     overlap : float [m]
         Gap, positive or negative, that counts as none.
 
     """
-    end = trial.end()
     first = inf
     for row in rows:
         gap = _gap(trial, end, contacts, row)
@@ -58,13 +59,13 @@ def meeting_time(trial, contacts, rows, overlap):
     return None if first == inf else first
 
 
-def dipping_time(trial, contacts, rows, parting, overlap, speed):
+def dipping_time(trial, end, contacts, rows, parting, overlap, speed):
     """
     Return the first time [s] at which one of some contacts closed that is open again, or None.
 
     Parameters
     ----------
-    trial, contacts, rows, overlap :
+    trial, end, contacts, rows, overlap :
         As for `meeting_time`; those asked for part at the end.
     parting : (k,) [m/s]
         How fast each contact parts then.
@@ -72,7 +73,6 @@ def dipping_time(trial, contacts, rows, parting, overlap, speed):
         What closes slower is not meant.
 
     """
-    end = trial.end()
     first = inf
     for row in rows:
         gap = _gap(trial, end, contacts, row)

@@ -52,20 +52,20 @@ def arriving(motion, near, gap, speed):
     return np.flatnonzero(closed & (near.approach(motion) > speed))
 
 
-def impact_time(trial, end_near, scales, limits, dip):
+def impact_time(trial, end, end_near, scales, limits, dip):
     """
     Return about when [s] the first impact is in the step of a `Trial`, None if there is none.
 
     That is of contacts near its end which overlap there and approach, or are deep, or have been
     closed in between: what turns fast dips in and out again, by `dip` [m] at most.
     """
-    end, contacts, overlap = trial.end(), end_near.contacts, units.OVERLAP * scales.length
+    contacts, overlap = end_near.contacts, units.OVERLAP * scales.length
     hits = _hitting(end, end_near, units.IMPACT_GAP * scales.length, limits, trial.near)
     if hits.size:
-        return meeting_time(trial, contacts, hits.tolist(), overlap) or 0.5 * trial.step
+        return meeting_time(trial, end, contacts, hits.tolist(), overlap) or 0.5 * trial.step
     speed, parting = 0.5 * limits.impact_speed, -end_near.approach(end)
     rows = np.flatnonzero((parting > speed) & (contacts.separation < dip)).tolist()
-    return dipping_time(trial, contacts, rows, parting, overlap, speed)
+    return dipping_time(trial, end, contacts, rows, parting, overlap, speed)
 
 
 def _hitting(motion, near, gap, limits, before):
@@ -115,7 +115,7 @@ def first_impact(island, limits, overlap, margin, trial, time):
             high, latest = time, (tried, motion, around)
             if depth > _GAIN * before or high - low <= _ROUNDING * trial.step:
                 break
-            time = meeting_time(tried, around.contacts, hits.tolist(), overlap)
+            time = meeting_time(tried, motion, around.contacts, hits.tolist(), overlap)
         elif arriving(motion, around, overlap, speed).size:
             return tried, motion, around
         else:

@@ -25,6 +25,12 @@ from rigid_sim_ros.engine.lasting_contact.step import (
 
 _MOST_PARTS = 1000
 
+_FASTER = 2
+"""
+How many times as fast as it may something must turn after an impact for the rest of a step to be
+divided again: each time anew, bounces that get ever shorter would never be given up.
+"""
+
 _MOST_TURN = 0.5
 """[rad] in a part: what dips in and out again within goes in by 3 % of its radius at most."""
 
@@ -73,7 +79,7 @@ def _advance(island, free, scales, limits, motion, time, step):
         trial = first_half(free, motion, near, left, limits)
         end = trial.end()
         end_near = island.near(end, margin)
-        hit = cut.impact_time(trial, end_near, scales, limits, dip)
+        hit = cut.impact_time(trial, end, end_near, scales, limits, dip)
         if hit is None or number == 2 * units.MAX_CUTS:
             left = 0.0
             break
@@ -83,7 +89,7 @@ def _advance(island, free, scales, limits, motion, time, step):
                              rebounds=number < units.MAX_CUTS)
         if left <= cut.SHORTEST * step:
             left = 0.0
-        if not left or _turns(island, motion, left) > 1:
+        if not left or _turns(island, motion, left) > _FASTER:
             trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
     end, end_near = _separated(end, end_near, scales, margin)

@@ -64,11 +64,12 @@ def test_what_touches_softly_hides_no_arrival():
     free, motion = island.free_motion(run.state), island.gather(run.state)
     limits = Limits.of(island.scales(free), step)
     trial = first_half(free, motion, island.near(motion, limits.margin(step)), step, limits)
-    contacts = island.find_contacts(trial.end(), 0.0)
+    end = trial.end()
+    contacts = island.find_contacts(end, 0.0)
     low, high = (np.flatnonzero(contacts.body_a == index).tolist() for index in (0, 1))
     assert len(low) == len(high) == 4
-    assert meeting_time(trial, contacts, low + high, 1e-12) == pytest.approx(gap, rel=1e-6)
-    assert meeting_time(trial, contacts, low, 1e-12) is None
+    assert meeting_time(trial, end, contacts, low + high, 1e-12) == pytest.approx(gap, rel=1e-6)
+    assert meeting_time(trial, end, contacts, low, 1e-12) is None
 
 
 def test_what_slows_down_hits_when_it_arrives():
