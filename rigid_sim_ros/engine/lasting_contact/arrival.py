@@ -82,7 +82,7 @@ def dipping_time(trial, end, contacts, rows, parting, overlap, speed):
             if depth > overlap:
                 time = _root(gap, lowest, -depth, overlap)
                 # a parabola falls at twice its mean speed
-                if 2.0 * depth > speed * (lowest - time):
+                if time < lowest and 2.0 * depth > speed * (lowest - time):
                     first = min(first, time)
     return None if first == inf else first
 

@@ -24,7 +24,7 @@ import numpy as np
 import pytest
 
 from rigid_sim_ros.engine import Simulation
-from rigid_sim_ros.engine.lasting_contact.arrival import meeting_time
+from rigid_sim_ros.engine.lasting_contact.arrival import dipping_time, meeting_time
 from rigid_sim_ros.engine.lasting_contact.step import first_half, Limits
 from rigid_sim_ros.engine.model import Material, Plane, Scene
 from rigid_sim_ros.engine.shapes import Box, Cube, Sphere
@@ -70,6 +70,8 @@ def test_what_touches_softly_hides_no_arrival():
     assert len(low) == len(high) == 4
     assert meeting_time(trial, end, contacts, low + high, 1e-12) == pytest.approx(gap, rel=1e-6)
     assert meeting_time(trial, end, contacts, low, 1e-12) is None
+    parting = np.ones(contacts.count)
+    assert dipping_time(trial, end, contacts, low, parting, 1e-12, np.float64(0.0)) is None
 
 
 def test_what_slows_down_hits_when_it_arrives():
