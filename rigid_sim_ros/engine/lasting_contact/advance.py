@@ -20,6 +20,7 @@ import numpy as np
 
 from rigid_sim_ros.engine.contacts import Contacts
 from rigid_sim_ros.engine.lasting_contact.automaton import OnPlane, plane_of
+from rigid_sim_ros.engine.lasting_contact.loose import advance_loose, is_loose
 from rigid_sim_ros.engine.lasting_contact.pile import Pile
 from rigid_sim_ros.engine.lasting_contact.stepping import advance_in_steps
 
@@ -47,20 +48,27 @@ def advance_island(island, state, start, duration):
     The members' columns of `state` (a `State` of the whole scene) are replaced. Impacts are noted
     in the world's log, at their instants. One body on one plane moves as a hybrid automaton, of
     high order (see `automaton`). For all else the duration is one step, or equal parts if
-    something is so fast that it could pass through something thin.
+    something is so fast that it could pass through something thin; what is clear of that is
+    stepped by itself (see `loose`).
     """
+    if is_loose(island, state, duration):
+        touching, resting = advance_loose(island, state, start, duration, _advance)
+    else:
+        touching, resting = _advance(island, state, start, duration)
+    touched = np.zeros(island.bodies.count, dtype=bool)
+    touched[touching.body_a] = touched[touching.body_b] = True
+    return Outcome(np.full(island.member_count, resting), touched[:island.member_count],
+                   touching)
+
+
+def _advance(island, state, start, duration):
+    """Return (closed contacts, which rest, bool) after a step of an island as one [s]."""
     found = None
     if island.member_count == 1:
         found = _on_plane(island, state, start, duration)
     elif island.member_count > FEW:
         found = _piled(island, state, start, duration)
-    if found is None:
-        found = advance_in_steps(island, state, start, duration)
-    touching, resting = found
-    touched = np.zeros(island.bodies.count, dtype=bool)
-    touched[touching.body_a] = touched[touching.body_b] = True
-    return Outcome(np.full(island.member_count, resting), touched[:island.member_count],
-                   touching)
+    return found or advance_in_steps(island, state, start, duration)
 
 
 def _on_plane(island, state, start, duration):

@@ -59,6 +59,8 @@ class Island:
         local = np.empty(world.bodies.count, dtype=int)
         local[self.columns] = np.arange(len(self.columns))
         self.pairs = PairGroups(self.bodies, local[pairs_a], local[pairs_b])
+        self.thickness = _thickness(self.bodies, self.pairs.pairs_a, self.pairs.pairs_b)
+        """(p,) [m]: half of the thinner of a pair; no end of it with a plane."""
         self._turning = TurningBounds(self.bodies)
         self.resists_spin = resists_spin(self.bodies)
         """Whether there is friction against rolling or pivoting."""
@@ -72,6 +74,8 @@ class Island:
         """The margin [m] and the `Near` that were found last."""
         self.pile = None
         """What many members keep from step to step."""
+        self._parts = {}
+        """Islands of some of the members, by these and their pairs."""
         self.older_piles = [island.pile for island in older if island.pile is not None]
 
     def covers(self, pairs_a, pairs_b):
@@ -82,6 +86,18 @@ class Island:
         """Return which of the scene's first `moving_count` bodies it takes for fixed, (k,) int."""
         others = self.columns[self.member_count:]
         return others[others < moving_count]
+
+    def part(self, members, pairs):
+        """Return the island of some of the members (k,) int and of the pairs (p,) int."""
+        if len(members) == self.member_count and len(pairs) == len(self.pairs.pairs_a):
+            return self
+        key = members.tobytes(), pairs.tobytes()
+        if key not in self._parts:
+            columns = self.columns
+            self._parts[key] = Island(
+                self.world, self.members[members], columns[self.pairs.pairs_a[pairs]],
+                columns[self.pairs.pairs_b[pairs]], (self,))
+        return self._parts[key]
 
     @property
     def member_count(self):
@@ -117,10 +133,14 @@ class Island:
                 ('linear_velocity', motion.linear), ('angular_velocity', motion.angular)):
             state.change(quantity, self.members, columns[:, :count])
 
+    def speeds(self, free, motion):
+        """Return how fast points of bodies are (n,) [m/s], and how soon faster (n,) [m/s^2]."""
+        return _length(motion.linear) + self.turning(motion), _length(free.acceleration)
+
     def reach(self, free, motion, duration):
         """Return how far [m] any point of the bodies (n,) comes in a time [s] without impacts."""
-        return duration * (_length(motion.linear) + self.turning(motion)
-                           + duration * _length(free.acceleration))
+        speed, pull = self.speeds(free, motion)
+        return duration * (speed + duration * pull)
 
     def turning(self, motion):
         """Return bounds (n,) of how fast [m/s] the points of bodies go about their centres."""
@@ -145,6 +165,8 @@ class Island:
         """Note that something has happened to these bodies (k,) of the scene, members or not."""
         if self.pile is not None:
             self.pile.quiet.forget(indices)
+        for part in self._parts.values():
+            part.disturb(indices)
 
     def near(self, motion, margin):
         """Return the contacts `Near` a `Motion`, with gaps below a margin [m]."""
@@ -156,6 +178,14 @@ class Island:
     def remember(self, near, margin):
         """Take these contacts `Near` a pose, known up to a margin [m], for what is found there."""
         self._near = margin, near
+
+
+def _thickness(bodies, pairs_a, pairs_b):
+    """Return the least half extents (p,) [m] of pairs; a plane has no other side to come out."""
+    extents = bodies.half_extents
+    half = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
+    flat = np.isinf(half[pairs_a]) | np.isinf(half[pairs_b])
+    return np.where(flat, np.inf, np.minimum(half[pairs_a], half[pairs_b]))
 
 
 def _own_bodies(bodies, columns, member_count):

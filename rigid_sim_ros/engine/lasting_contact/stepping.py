@@ -23,7 +23,8 @@ from rigid_sim_ros.engine.lasting_contact.rest import at_rest
 from rigid_sim_ros.engine.lasting_contact.step import (
     first_half, Limits, push_out, Trial)
 
-_MOST_PARTS = 1000
+MOST_PARTS = 1000
+"""Of a step; more are not worth it."""
 
 _FASTER = 2
 """
@@ -117,15 +118,14 @@ def _separated(motion, near, scales, margin):
 
 def parts_of(island, free, motion, duration):
     """Return how many parts a step needs so that nothing passes half of what is thinnest."""
-    extents = island.bodies.half_extents
-    # nothing passes through a plane unseen: it has no other side
-    half = np.where(extents.any(axis=0), extents.min(axis=0), np.inf)
-    a, b = island.pairs.pairs_a, island.pairs.pairs_b
-    thickness = np.where(np.isinf(half[a]) | np.isinf(half[b]), np.inf,
-                         np.minimum(half[a], half[b]))
+    return _count(parts_of_pairs(island, free, motion, duration).max(initial=0.0))
+
+
+def parts_of_pairs(island, free, motion, duration):
+    """Return in how many parts, (p,) float, pairs of an island pass half of what is thinner."""
     pull = 2 * np.sqrt(rotation.dot(free.acceleration, free.acceleration).max())
     way = duration * (island.closing(motion) + duration * pull)
-    return _count((way / thickness).max(initial=0.0))
+    return way / island.thickness
 
 
 def _turns(island, motion, duration):
@@ -147,4 +147,4 @@ def _parts(island, free, motion, duration):
 
 def _count(parts):
     """Return a whole number of parts, no less than needed but for rounding."""
-    return int(min(max(1.0, np.ceil(parts * (1 - 1e-9))), _MOST_PARTS))
+    return int(min(max(1.0, np.ceil(parts * (1 - 1e-9))), MOST_PARTS))
