@@ -104,6 +104,8 @@ class Deviations:
             return
         distance = np.linalg.norm(recorded.position - again.position, axis=1)
         angle = rotation.angle_between(recorded.orientation.T, again.orientation.T)
+        # the product of a quaternion and its inverse is not quite one
+        angle[(recorded.orientation == again.orientation).all(axis=1)] = 0.0
         for found, values in ((self.distances, distance), (self.angles, angle)):
             worst = int(np.argmax(values))
             found.append(_Deviation(
@@ -139,8 +141,11 @@ class Deviations:
         for axis, found, label in zip(axes, (self.distances, self.angles),
                                       ('position [m]', 'attitude [rad]')):
             time = [one.time for one in found]
-            axis.semilogy(time, [one.largest for one in found], label='largest')
-            axis.semilogy(time, [one.median for one in found], label='median')
+            axis.plot(time, [one.largest for one in found], label='largest')
+            axis.plot(time, [one.median for one in found], label='median')
+            if any(one.largest > 0 for one in found):
+                # of nothing but zeros there is no logarithm
+                axis.set_yscale('log')
             axis.set_ylabel(label)
             axis.grid(True)
         axes[0].legend()

@@ -103,10 +103,10 @@ class Resimulation:
 
     @property
     def other_software(self):
-        """Return what other versions it was recorded with than there are here, one line each."""
+        """Return what else it was recorded with than there is here, one line each."""
         recorded = self._bag.options()
-        return [f'recorded with {name} {recorded[name]}, simulated with {here}'
-                for name, here in software().items() if recorded.get(name, here) != here]
+        return [f'recorded with {name} {recorded.get(name, "unknown")}, simulated with {here}'
+                for name, here in software().items() if recorded.get(name) != here]
 
     def pairs(self):
         """

@@ -14,10 +14,18 @@
 
 """What makes a recording, besides its scene and options."""
 
+from functools import lru_cache
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 import platform
 
 import numpy
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+
+_DECIDING = ('engine', 'messages', 'nodes', 'scene')
+"""Folders of the package with code that what is simulated again depends on."""
 
 
 def package_version():
@@ -30,5 +38,20 @@ def package_version():
 
 def software():
     """Return what besides a scene and its options can change the last bit of a result."""
-    return {'version': package_version(), 'numpy': numpy.__version__,
-            'machine': platform.machine()}
+    return {'version': package_version(), 'code': digest_of_code(),
+            'numpy': numpy.__version__, 'machine': platform.machine()}
+
+
+@lru_cache(maxsize=None)
+def digest_of_code(package=_PACKAGE):
+    """
+    Return a number that tells code from other code of the same version, hexadecimal.
+
+    Of the sources in the package's folder as they are when this is called first.
+    """
+    digest = sha256()
+    for path in sorted(path for folder in _DECIDING for path in (package / folder).rglob('*.py')):
+        # parted by what no source holds
+        digest.update(path.relative_to(package).as_posix().encode() + b'\0')
+        digest.update(path.read_bytes() + b'\0')
+    return digest.hexdigest()[:12]

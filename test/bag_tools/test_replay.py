@@ -15,17 +15,21 @@
 """Recordings made as the node makes them, simulated again."""
 
 from dataclasses import replace
+from pathlib import Path
+import shutil
 import struct
 
 import numpy as np
 import pytest
+import rigid_sim_ros
 from rigid_sim_ros import messages, topics
 from rigid_sim_ros.bag_tools import info, recover, replay
 from rigid_sim_ros.engine import Simulation
 from rigid_sim_ros.nodes.command_readers import READERS
 from rigid_sim_ros.nodes.session import Session
-from rigid_sim_ros.recording import Bag, read, Recorder
+from rigid_sim_ros.recording import Bag, read, Recorder, recorder, software
 from rigid_sim_ros.recording.journal import encode_parameters, encode_reset
+from rigid_sim_ros.recording.software import digest_of_code
 from rigid_sim_ros.scene import dump_scene, load_scene
 
 SCENE = """
@@ -272,6 +276,50 @@ def test_another_numpy_is_told_where_results_differ(tmp_path, capsys, monkeypatc
     assert replay.main([str(tmp_path / 'bag')]) == 1
     assert capsys.readouterr().out.splitlines()[1] == (
         f'recorded with numpy 0.1, simulated with {np.__version__}')
+
+
+@pytest.mark.parametrize('recorded_with', ['0123456789ab', None])
+def test_other_code_of_the_same_version_is_told_where_results_differ(
+        tmp_path, capsys, monkeypatch, recorded_with):
+    with monkeypatch.context() as patch:
+        run = {**software(), 'code': recorded_with}
+        if recorded_with is None:
+            del run['code']
+        patch.setattr(recorder, 'software', lambda: run)
+        with Recorded(tmp_path / 'bag') as run:
+            run.session.simulation.set_velocity('cube', linear=(0.5, 0, 0))
+            run.advance(1)
+    assert replay.main([str(tmp_path / 'bag')]) == 1
+    here = software()['code']
+    assert capsys.readouterr().out.splitlines()[1:] == [
+        f'recorded with code {recorded_with or "unknown"}, simulated with {here}']
+
+
+def test_every_source_that_results_depend_on_is_in_the_number_of_the_code(tmp_path):
+    package = Path(rigid_sim_ros.__file__).parent
+    changed = (None, 'engine/flight/series.py', 'messages/cdr.py', 'nodes/session.py',
+               'scene/values.py', 'view/camera.py')
+    digests = []
+    for number, name in enumerate(changed):
+        copy = shutil.copytree(package, tmp_path / str(number))
+        if name:
+            (copy / name).write_text((copy / name).read_text() + '\n')
+        digests.append(digest_of_code(copy))
+    # how it is looked at does not count
+    assert digests[0] == digests[-1] == software()['code']
+    assert len(set(digests)) == len(changed) - 1
+
+
+@pytest.mark.filterwarnings('error')
+def test_the_plot_of_equal_motions_is_drawn_without_a_warning(tmp_path, capsys):
+    with Recorded(tmp_path / 'bag') as run:
+        run.advance(3)
+    plot = tmp_path / 'plot.png'
+    assert replay.main([str(tmp_path / 'bag'), '--with', 'method=exact',
+                        '--plot', str(plot)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1].startswith('attitude: largest deviation 0 rad ')
+    assert plot.stat().st_size > 1000 or 'no plot' in lines[-1]
 
 
 def test_the_difference_to_another_method_is_that_of_theory(tmp_path, capsys):
