@@ -128,20 +128,19 @@ def _poses(source):
 def _states(source):
     simulation = source.simulation
     encoder = messages.MultiDOFJointStateEncoder(source.frame_id, simulation.names)
-    held = None, None
+    held = {}
 
     def encode(time_ns):
-        nonlocal held
         if source.shared:
             encoder.copy_poses(source.shared['poses'])
         else:
             encoder.write_poses(simulation.position, simulation.orientation)
-        encoder.write_twists(simulation.linear_velocity, simulation.angular_velocity)
-        force, torque = simulation.force, simulation.torque
-        # the engine never writes into an array of its state: if it is the same, so are the values
-        if force.base is not held[0] or torque.base is not held[1]:
-            encoder.write_wrenches(force, torque)
-            held = force.base, torque.base
+        for name, part in encoder.steady_parts.items():
+            rows = getattr(simulation, name)
+            # the engine never writes into an array of its state: the same has the same values
+            if rows.base is not held.get(name):
+                part[...] = rows
+                held[name] = rows.base
         return encoder.view(time_ns)
 
     return encode

@@ -109,6 +109,8 @@ def test_states_made_beside_poses_again_and_again_are_those_made_alone(method):
         yield lambda: simulation.apply_wrench('ball', (0, 0, 3))
         yield lambda: simulation.apply_wrenches(np.ones((2, 3)), np.zeros((2, 3)))
         yield lambda: simulation.set_pose('ball', (-1, -2, -2))
+        yield lambda: simulation.set_velocity('ball', linear=(1, 0, 0))
+        yield lambda: simulation.set_velocity('cube', angular=(0, 1, 0))
         yield lambda: simulation.reset()
         yield lambda: simulation.advance(0.5)
 
@@ -121,7 +123,7 @@ def test_states_made_beside_poses_again_and_again_are_those_made_alone(method):
         beside.shared = None
         assert data == encode(alone, '~/states') == bytes(states(TIME_NS))
         seen.add(data)
-    assert len(seen) == 9 - 1  # after the reset it is as at the start
+    assert len(seen) == 11 - 1  # after the reset it is as at the start
 
 
 def test_collisions_and_their_text_tell_the_same(source):

@@ -64,15 +64,16 @@ class MultiDOFJointStateEncoder:
             self._template.doubles(offset, body_count, width)
             for offset, width in zip(offsets, (7, 6, 6)))
         self._position, self._orientation = self._poses[:, :3], self._poses[:, 3:]
-        self._linear_velocity, self._angular_velocity = twists[:, :3], twists[:, 3:]
-        self._force, self._torque = wrenches[:, :3], wrenches[:, 3:]
+        self.steady_parts = {
+            'linear_velocity': twists[:, :3], 'angular_velocity': twists[:, 3:],
+            'force': wrenches[:, :3], 'torque': wrenches[:, 3:]}
+        """What else is in the message, (n, 3) each, to be written to where it has changed."""
 
-    def encode(self, time_ns, position, orientation, linear_velocity, angular_velocity,
-               force, torque):
-        """Return the message with a stamp [ns] and the bodies' poses, twists and wrenches."""
+    def encode(self, time_ns, position, orientation, *others):
+        """Return the message with a stamp [ns], poses and rows (n, 3) for `steady_parts`."""
         self.write_poses(position, orientation)
-        self.write_twists(linear_velocity, angular_velocity)
-        self.write_wrenches(force, torque)
+        for part, rows in zip(self.steady_parts.values(), others, strict=True):
+            part[...] = rows
         return bytes(self.view(time_ns))
 
     def write_poses(self, position, orientation):
@@ -83,16 +84,6 @@ class MultiDOFJointStateEncoder:
     def copy_poses(self, poses):
         """Let it have those that are rows (n, 7) of another message."""
         self._poses[...] = poses
-
-    def write_twists(self, linear_velocity, angular_velocity):
-        """Let it have velocities (n, 3) and (n, 3) from now on."""
-        self._linear_velocity[...] = linear_velocity
-        self._angular_velocity[...] = angular_velocity
-
-    def write_wrenches(self, force, torque):
-        """Let it have wrenches (n, 3) and (n, 3) from now on."""
-        self._force[...] = force
-        self._torque[...] = torque
 
     def view(self, time_ns):
         """Return the message with a stamp [ns], to be read until anything is written to it."""

@@ -19,8 +19,12 @@ import struct
 
 from mcap.opcode import Opcode
 
-CHUNK_BYTES = 2**20
-"""A chunk is written when it has grown to so many bytes, if its time is not up before."""
+CHUNK_BYTES = 2**22
+"""
+A chunk is written when it has grown to so many bytes, if its time is not up before.
+
+Each repeats names and what else does not change once more, and each wakes the thread that writes.
+"""
 
 _MESSAGE = struct.Struct('<BQHIQQ')
 _MESSAGE_FIELDS = 22

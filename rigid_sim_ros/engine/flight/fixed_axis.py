@@ -63,9 +63,11 @@ class FixedAxisRotations:
         self._all = tuple(self._table[rows] for rows in (
             COSINE, SINE, HALF_RATE, QUARTER_GROWTH))
         self._scratch = np.empty(6 * BLOCK)
+        self._steady = None
 
     def begin_one(self, body, quaternion, rate, motion):
         """Start one rotation in plain floats; `motion` is what `staying_axis` returns."""
+        self._steady = None
         axis, speed, growth = motion
         self._table[:, body] = (
             *quaternion, *product((*axis, 0.0), quaternion), 0.5 * speed, 0.25 * growth,
@@ -74,6 +76,7 @@ class FixedAxisRotations:
 
     def begin(self, bodies, quaternion, rate, axis, speed, growth):
         """Start rotations of bodies (k,) with what `staying_axes` returns for them."""
+        self._steady = None
         self._table[COSINE, bodies] = quaternion
         self._table[SINE, bodies] = product((*axis, 0.0), quaternion)
         self._table[HALF_RATE, bodies] = 0.5 * speed
@@ -84,6 +87,7 @@ class FixedAxisRotations:
 
     def hold(self, bodies, quaternion, rate):
         """Let bodies (k,) have orientations (4, k) and rates (3, k) that do not change."""
+        self._steady = None
         self._table[:, bodies] = 0.0
         self._table[COSINE, bodies] = quaternion
         self._table[RATE, bodies] = rate
@@ -122,11 +126,20 @@ class FixedAxisRotations:
                 scratch[waves:size].reshape(out.shape))
 
     def rates(self, elapsed, indices):
-        """Return the rates [rad/s] of bodies (k,), None for all, in world axes, (3, k)."""
+        """
+        Return the rates [rad/s] of bodies (k,), None for all, in world axes, (3, k).
+
+        Those of all, while they stay the same, are one array that cannot be written.
+        """
         table = self._table if indices is None else columns_of(self._table, indices)
         if self._grows:
             return table[GROWTH] * elapsed + table[RATE]
-        return table[RATE].copy()
+        if indices is not None:
+            return table[RATE].copy()
+        if self._steady is None:
+            self._steady = table[RATE].copy()
+            self._steady.setflags(write=False)
+        return self._steady
 
     def trajectory(self, body):
         """Return quaternion and rate of one body as a function of the time since its start."""

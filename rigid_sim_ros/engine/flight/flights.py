@@ -159,8 +159,10 @@ class Flights:
         """Return linear and angular velocities, (3, k) each, [m/s] and [rad/s], as `poses`."""
         elapsed = self._elapsed(time, indices)
         rate = self._fixed_axis.rates(elapsed, indices)
-        for rotations in self._present:
-            rotations.write_rates(time, indices, rate)
+        if self._present:
+            rate = rate.copy()
+            for rotations in self._present:
+                rotations.write_rates(time, indices, rate)
         return self._translations.velocities(elapsed, indices), rate
 
     def translation(self, time, indices=None):

@@ -40,15 +40,18 @@ class Translations:
         self.start = self._table[START]
         self._all = tuple(self._table[rows] for rows in (POSITION, VELOCITY, HALF_ACCELERATION))
         self.acceleration = self._table[ACCELERATION]
+        self._steady = None
 
     def begin_one(self, body, time, position, velocity, acceleration):
         """Start a flight of one body; vectors (3,) in plain floats."""
+        self._steady = None
         x, y, z = acceleration
         self._table[:, body] = (time, *position, *velocity, 0.5 * x, 0.5 * y, 0.5 * z, x, y, z)
         self._accelerates = self._accelerates or bool(x or y or z)
 
     def begin(self, bodies, time, position, velocity, acceleration):
         """Start a flight of bodies (k,); vectors (3, k)."""
+        self._steady = None
         self.start[bodies] = time
         self._table[POSITION, bodies] = position
         self._table[VELOCITY, bodies] = velocity
@@ -73,11 +76,20 @@ class Translations:
         out += position
 
     def velocities(self, elapsed, indices):
-        """Return the velocities [m/s] of bodies (k,), None for all, (3, k)."""
+        """
+        Return the velocities [m/s] of bodies (k,), None for all, (3, k).
+
+        Those of all, while they stay the same, are one array that cannot be written.
+        """
         table = self._table if indices is None else columns_of(self._table, indices)
         if self._accelerates:
             return table[ACCELERATION] * elapsed + table[VELOCITY]
-        return table[VELOCITY].copy()
+        if indices is not None:
+            return table[VELOCITY].copy()
+        if self._steady is None:
+            self._steady = table[VELOCITY].copy()
+            self._steady.setflags(write=False)
+        return self._steady
 
     def trajectory(self, body):
         """Return position and velocity of one body as a function of the time since its start."""
