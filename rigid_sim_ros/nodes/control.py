@@ -22,7 +22,7 @@ from rigid_sim_ros.nodes.announcement import paused_text
 from rigid_sim_ros.nodes.pacing import Pacer
 from rigid_sim_ros.nodes.signals import Interrupted
 
-IDLE = 0.1
+IDLE = 0.125
 """Wall time [s] between two looks at the world while paused."""
 
 CANNOT_GO_ON = ArithmeticError, LinAlgError

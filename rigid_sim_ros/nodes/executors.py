@@ -25,7 +25,7 @@ AUTO, EVENTS, SINGLE_THREADED = 'auto', 'events', 'single_threaded'
 
 EXECUTORS = (AUTO, EVENTS, SINGLE_THREADED)
 
-LONGEST_WAIT = 0.05
+LONGEST_WAIT = 0.125
 """
 Longest time [s] given to `spin_once`. Waiting happens in C++, where a signal is only noticed by
 Python when it is over; and the events executor of Jazzy waits for ever, deaf to signals and
