@@ -17,8 +17,9 @@ What recording costs: a node's share of a core with it and without, and whether 
 
     python test/nodes/measure_recording.py [DURATION]
 
-Cubes drift without touching, nobody subscribes. Each figure is of so many seconds [s] (5) of wall
-time. The folder for temporary files needs room: a thousand cubes at 1 kHz fill 70 MB a second.
+Cubes drift without touching, each with a motion of its own, nobody subscribes. Each figure is of
+so many seconds [s] (5) of wall time. The folder for temporary files needs room: a thousand cubes
+at 1 kHz fill 60 MB a second.
 """
 
 import os
@@ -28,7 +29,8 @@ import sys
 import tempfile
 import time
 
-from measure_publishing import processor_time, SCENE
+from measure_publishing import processor_time
+from measure_stages import drifting
 from node_harness import NodeProcess
 import numpy as np
 import yaml
@@ -47,7 +49,7 @@ def measure(count, record, duration):
     """Return the processor time [s] a second, and the simulated seconds recorded in one."""
     with tempfile.TemporaryDirectory() as folder:
         path, bag = Path(folder) / 'drift.yaml', Path(folder) / 'bag'
-        path.write_text(SCENE.format(count=list(count)))
+        path.write_text(drifting(count))
         with NodeProcess(folder, scene=path, publish_rate=RATE, record=record,
                          record_path=bag) as process:
             process.wait_for_text('try, in another terminal')
