@@ -40,7 +40,7 @@ REPETITIONS = 5
 
 
 def drifting(counts):
-    """Return a scene (YAML) of so many cubes along x, y and z that fly apart, so that none meet."""
+    """Return a scene (YAML) of cubes along x, y and z that fly apart, so that none ever meet."""
     random = np.random.default_rng(1)
     lines = ['gravity: [0, 0, 0]', 'bodies:']
     for number, place in enumerate(np.ndindex(*counts), 1):
