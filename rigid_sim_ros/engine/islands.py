@@ -28,7 +28,7 @@ import numpy as np
 from rigid_sim_ros.engine.broad_phase import candidate_pairs
 from rigid_sim_ros.engine.columns import columns_of
 from rigid_sim_ros.engine.graph import component_labels
-from rigid_sim_ros.engine.lasting_contact import advance_island, FEW, Island
+from rigid_sim_ros.engine.lasting_contact import advance_island, Bearing, FEW, Island
 from rigid_sim_ros.engine.narrow_phase import separations
 from rigid_sim_ros.engine.reach import passed_on, Reach, REACH_FACTOR, within
 
@@ -73,7 +73,9 @@ class Islands:
         self.touching = np.zeros(count, dtype=bool)
         self.asleep = np.zeros(count, dtype=bool)
         self._mates = np.full(count, -1)
-        """(n,): bodies asleep under the same number wake together."""
+        """(n,): bodies asleep under the same number wake together; -1 of those awake."""
+        self._bearings = {}
+        """What holds those asleep, by that number."""
         self._islands = []
         self._members = np.zeros(0, dtype=int)
         """(k,): the bodies in these islands."""
@@ -108,12 +110,27 @@ class Islands:
         if self.asleep[indices].any():
             woken = np.flatnonzero(self.asleep & np.isin(self._mates, self._mates[indices]))
             self.asleep[woken] = False
+            for number in {*self._mates[woken].tolist()}:
+                del self._bearings[number]
             self._mates[woken] = -1
             self.add(woken)
         disturbed = np.concatenate((indices, woken))
         for island in self._islands:
             island.disturb(disturbed)
         return woken
+
+    def bear(self, indices, state):
+        """
+        Return which of bodies (k,) sleep on under the forces of a `State`, (k,) bool.
+
+        Who is awake does not. If there are very many, nobody is asked.
+        """
+        mates = self._mates[indices].tolist()
+        numbers = self._bearings.keys() & mates
+        if len(numbers) > CROWD:
+            return np.zeros(len(indices), dtype=bool)
+        held = {number for number in numbers if self._bearings[number].holds(state)}
+        return np.array([number in held for number in mates], dtype=bool)
 
     def displace(self):
         """Note that bodies have been put elsewhere: pairs are to be looked for again."""
@@ -162,8 +179,7 @@ class Islands:
             self._pairs.update(end, island, outcome.contacts)
             if outcome.resting.any():
                 resting.append(island.members[outcome.resting])
-                self._mates[resting[-1]] = island.members[
-                    _groups(island, outcome.contacts)[outcome.resting]]
+                self._lay_down(island, outcome)
             if not outcome.touching.all():
                 parting.append(_alone(island, outcome.touching | outcome.resting))
         if self._spare < inf:
@@ -176,6 +192,16 @@ class Islands:
         self.asleep[changes.resting] = True
         self.active = bool(self.touching.any())
         return changes
+
+    def _lay_down(self, island, outcome):
+        """Note who of an island sleeps on whom after an `Outcome`."""
+        places = np.flatnonzero(outcome.resting)
+        labels = _groups(island, outcome.contacts)[places]
+        numbers = island.members[labels]
+        self._mates[island.members[places]] = numbers
+        for number in {*numbers.tolist()}:
+            self._bearings[number] = Bearing(
+                island, places[numbers == number], outcome.contacts)
 
     def _current(self, members, start, end, state):
         """Return the islands of these bodies (k,), made again if they may not be complete."""

@@ -81,15 +81,56 @@ def test_a_push_moves_one_of_many_that_lean_on_each_other(rest):
 
 def test_a_push_that_friction_holds_ends_in_sleep_again():
     simulation = asleep(cube('a', 0.0))
+    simulation.set_velocity('a', angular=(0.0, 0.0, 1e-3))
     simulation.apply_wrench('a', force=(4.0, 0.0, 0.0))
+    assert not simulation.asleep.any()
     for _ in range(20):
         simulation.advance(STEP)
     assert simulation.asleep.all()
-    assert simulation.position[0, 0] == pytest.approx(0.0, abs=1e-12)
+    assert simulation.position[0, 0] == pytest.approx(0.0, abs=1e-6)
     simulation.apply_wrench('a', force=(6.0, 0.0, 0.0))
     simulation.advance(0.5)
     # mu m g = 4.905 N
     assert simulation.position[0, 0] == pytest.approx((6.0 - 4.905) * 0.5 ** 2 / 2, rel=1e-6)
+
+
+def test_pushes_that_are_held_wake_nobody():
+    """A tower under forces that change each step, all below mu g of what is above: no work."""
+    simulation = asleep(*tower(0.0, 10, 'a'))
+    position = simulation.position.copy()
+    work = vars(simulation.work).copy()
+    for step in range(50):
+        simulation.apply_wrench('a3', force=(4.0 * np.cos(step), 4.0 * np.sin(step), -step),
+                                torque=(0.0, 0.0, 0.1 * np.sin(step)))
+        assert simulation.asleep.all()
+        simulation.advance(STEP)
+    assert vars(simulation.work) == work
+    np.testing.assert_array_equal(simulation.position, position)
+
+
+@pytest.mark.parametrize('part, held', [(0.999, True), (1.001, False)])
+def test_pushes_are_held_together_or_not(part, held):
+    """Each alone would be: 0.8 mu m g on the upper of two cubes, the rest of 2 mu m g below."""
+    limit = 0.5 * 9.81
+    simulation = asleep(*tower(0.0, 2, 'a'))
+    simulation.apply_wrench('a1', force=(0.8 * limit, 0.0, 0.0))
+    assert simulation.asleep.all()
+    simulation.apply_wrench('a0', force=((2.0 * part - 0.8) * limit, 0.0, 0.0))
+    assert simulation.asleep.all() == held
+    simulation.advance(0.5)
+    assert simulation.asleep.all() == held
+    way = 0.0 if held else (part - 1.0) * limit * 0.5 ** 2 / 2
+    assert simulation.position[:, 0] == pytest.approx((way, way), abs=1e-7)
+
+
+@pytest.mark.parametrize('part, held', [(0.999, True), (1.001, False)])
+def test_a_pull_upwards_is_held_up_to_the_weight(part, held):
+    simulation = asleep(cube('a', 0.0), cube('b', 1.0))
+    simulation.apply_wrench('a', force=(0.0, 0.0, part * 9.81))
+    assert simulation.asleep.tolist() == [held, True]
+    simulation.advance(0.5)
+    rise = 0.0 if held else (part - 1.0) * 9.81 * 0.5 ** 2 / 2
+    assert simulation.position[0, 2] == pytest.approx(EDGE / 2 + rise, abs=1e-9)
 
 
 def test_what_is_hit_wakes_and_what_is_not_sleeps_on():

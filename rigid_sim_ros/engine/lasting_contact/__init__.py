@@ -20,6 +20,7 @@ step, as long as members and pairs stay the same.
 """
 
 from rigid_sim_ros.engine.lasting_contact.advance import advance_island, FEW, Outcome
+from rigid_sim_ros.engine.lasting_contact.bearing import Bearing
 from rigid_sim_ros.engine.lasting_contact.island import Island
 
-__all__ = ['advance_island', 'FEW', 'Island', 'Outcome']
+__all__ = ['advance_island', 'Bearing', 'FEW', 'Island', 'Outcome']

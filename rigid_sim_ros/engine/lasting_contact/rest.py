@@ -26,7 +26,7 @@ from rigid_sim_ros.engine.friction import mixed_friction
 from rigid_sim_ros.engine.lasting_contact import scales as units
 from rigid_sim_ros.engine.lasting_contact.step import second_half, STATIC
 from rigid_sim_ros.engine.solvers import contact_rows, ContactProblem, solve
-from rigid_sim_ros.engine.solvers.linear import solve_guessed
+from rigid_sim_ros.engine.solvers.sticking import Sticking
 
 MOST_CONTACTS = 200
 """Contacts of which `stands` makes a dense matrix."""
@@ -47,29 +47,60 @@ def slow(island, scales, motion):
             & (np.abs(motion.angular[:, :count]).max(axis=0) * radius <= limit))
 
 
-def stands(island, free, scales, motion, contacts, members):
+class Support:
     """
-    Return whether touching contacts hold some of an island's members, (m,) int.
+    What contacts that touch can hold of an island at rest.
 
-    Where there are very many contacts that is only looked for with all of them pressing and
-    sticking, and otherwise said not to be so.
+    Whatever forces act the equations are the same: asked again it does little but multiply.
+
+    Parameters
+    ----------
+    island : Island
+    motion : Motion
+        Its poses; velocities do not count.
+    contacts : Contacts
+        Those that may hold it, in its columns.
+
     """
-    if not 0 < contacts.count <= MOST_CONTACTS:
-        return False
-    bodies = island.bodies
-    rows = contact_rows(bodies, contacts, motion.position, motion.orientation)
-    pull = free.kicked(motion.stopped(), 1.0)
-    problem = ContactProblem(
-        rows.response(), rows.motion(pull.linear, pull.angular),
-        mixed_friction(bodies.friction[contacts.body_a], bodies.friction[contacts.body_b]),
-        np.zeros(contacts.count), np.zeros((2, contacts.count)))
-    solution = solve_guessed(problem, np.ones(contacts.count, dtype=bool), _ACCURACY)
-    if solution is None and contacts.count <= FEW_CONTACTS:
-        solution = solve(problem, accuracy=_ACCURACY)
-    if solution is None:
-        return False
-    left = pull.struck(rows.touched, *rows.change(solution.force))
-    return bool(_held(island, scales, left)[members].all())
+
+    def __init__(self, island, motion, contacts):
+        """See the class."""
+        bodies = island.bodies
+        self._island, self._motion = island, motion.stopped()
+        self._rows = contact_rows(bodies, contacts, motion.position, motion.orientation)
+        self._response = self._rows.response()
+        self._friction = mixed_friction(
+            bodies.friction[contacts.body_a], bodies.friction[contacts.body_b])
+        self._sticking = None
+
+    def holds(self, free, scales, members):
+        """
+        Return whether members (m,) int stay where they are under the forces of a `FreeMotion`.
+
+        Where there are very many contacts that is only looked for with all of them pressing and
+        sticking, and otherwise said not to be so.
+        """
+        pull = free.kicked(self._motion, 1.0)
+        count = len(self._friction)
+        problem = ContactProblem(
+            self._response, self._rows.motion(pull.linear, pull.angular), self._friction,
+            np.zeros(count), np.zeros((2, count)))
+        if self._sticking is None:
+            self._sticking = Sticking(problem)
+        force = self._sticking.force(problem, _ACCURACY)
+        if force is None and count <= FEW_CONTACTS:
+            solution = solve(problem, accuracy=_ACCURACY)
+            force = None if solution is None else solution.force
+        if force is None:
+            return False
+        left = pull.struck(self._rows.touched, *self._rows.change(force))
+        return bool(_held(self._island, scales, left)[members].all())
+
+
+def stands(island, free, scales, motion, contacts, members):
+    """Return whether touching contacts hold some of an island's members, (m,) int."""
+    return 0 < contacts.count <= MOST_CONTACTS and Support(island, motion, contacts).holds(
+        free, scales, members)
 
 
 def at_rest(free, scales, motion, near, touching):

@@ -213,7 +213,7 @@ class Exact:
         state.change('torque', indices, torque[:, changed])
         self._force, self._torque = state.force, state.torque
         self._acceleration = self._world.acceleration(self._force)
-        self._restart(indices)
+        self._restart(indices[~self._islands.bear(indices, state)])
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -226,6 +226,8 @@ class Exact:
 
     def _restart(self, indices):
         """Go on from the changed state of bodies (k,)."""
+        if not len(indices):
+            return
         woken = self._islands.wake(indices)
         self._encounters.hide(woken)
         indices = np.union1d(indices, woken)
