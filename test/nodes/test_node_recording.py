@@ -88,6 +88,8 @@ def test_a_node_killed_at_any_moment_loses_no_more_than_the_last_second(tmp_path
         with NodeProcess(tmp_path / f'node_{number}', scene=tmp_path / 'crowd.yaml', record=True,
                          record_path=bag) as process, Client(process) as client:
             received = client.listen('~/poses', raw=True)
+            # the topics are there a moment before the bag is
+            process.wait_for_text('recording to ')
             client.spin(float(generator.uniform(0.0, 3.0)))
             process.process.kill()
             process.wait()
