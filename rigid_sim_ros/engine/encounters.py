@@ -34,10 +34,19 @@ Flights are searched for a touch at least this far ahead [s]. Longer finds more 
 change of flight makes worthless, shorter searches the same arc more often.
 """
 
+LOOKAHEAD = 10.0
+"""Pairs that meet later than so long from now [s] are looked at closer when that time comes."""
+
+LISTED_PAIRS = 1000
+"""
+Of more new pairs than this those are not listed, and all are looked through by then: each change
+of a flight lists a pair with everybody.
+"""
+
 FOREVER = 1e300
 """Later than any time [s] that is asked for; what can never meet is due at infinity."""
 
-FEW, FEW_BOUNDS = 8, 4
+FEW, FEW_BOUNDS = 8, 12
 """Up to so many pairs are searched, or bounded, one by one: faster (measured)."""
 
 RENEWED_PAIRS = 20_000
@@ -159,8 +168,12 @@ class Encounters:
         """Return when, (p,) [s], pairs that do not touch until and at `time` may."""
         return np.maximum(self._bounds(a, b, time), nextafter(time, inf))
 
-    def _bounds(self, a, b, time):
-        """Return the times [s], (p,), from `time` on, before which pairs cannot touch."""
+    def _bounds(self, a, b, time, later=inf):
+        """
+        Return the times [s], (p,), from `time` on, before which pairs cannot touch.
+
+        Those `later` than so long may be earlier than they need be, but not within it.
+        """
         self._world.work.pair_bounds += len(a)
         if len(a) <= FEW_BOUNDS:
             fall = partial(self._flights.fall, time)
@@ -168,7 +181,7 @@ class Encounters:
                              for pair in zip(a.tolist(), b.tolist())])
         center, velocity = self._flights.translation(time)
         return time + meeting_times(self._world.bodies, a, b, center, velocity,
-                                    self._flights.acceleration)
+                                    self._flights.acceleration, later)
 
     def _pairs_with(self, indices):
         """Return the bodies a and b, (p,) each, of all pairs of these with what they may meet."""
@@ -208,7 +221,9 @@ class Encounters:
 
     def _replace(self, indices, a, b, time):
         """List pairs in the place of those of bodies (k,), but none due after the horizon."""
-        due = self._bounds(a, b, time)
+        due = self._bounds(a, b, time, LOOKAHEAD)
+        if len(a) > LISTED_PAIRS and ((due > time + LOOKAHEAD) & (due <= FOREVER)).any():
+            self._horizon = min(self._horizon, time + LOOKAHEAD)
         near = due <= min(self._horizon, FOREVER)
         columns = [a[near], b[near], due[near], *np.zeros((2, np.count_nonzero(near)), dtype=bool)]
         keep = self._without(indices)

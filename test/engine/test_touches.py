@@ -87,3 +87,25 @@ def test_a_touch_that_no_number_tells_is_an_error():
     simulation.set_velocity('body_0', (0.0, 0.0, -1e20))
     with pytest.raises(ArithmeticError, match='too fast to tell where they touch'):
         simulation.advance(1.0)
+
+
+def test_who_is_pushed_among_many_hits_at_its_instant_long_after():
+    """
+    One of 1200 balls that fly alike is pushed, and hits the next one after 20 s.
+
+    The closed form: gap = force t^2 / (2 mass).
+    """
+    radius, way, push = 0.1, 40.0, 0.2
+    shape = Sphere(radius)
+    bodies = [Body(f'ball_{number}', shape, 1.0, shape.inertia(1.0), velocity=(3.0, 0.0, 0.0),
+                   position=(way * (number % 60), way * (number // 60), 0.0),
+                   material=Material(1.0, 0.0)) for number in range(1200)]
+    simulation = Simulation(Scene(tuple(bodies), gravity=(0.0, 0.0, 0.0)))
+    simulation.advance(1.0)
+    simulation.apply_wrench('ball_100', force=(push, 0.0, 0.0))
+    expected = 1.0 + np.sqrt(2 * (way - 2 * radius) / push)
+    hits = []
+    while simulation.time < 25.0:
+        simulation.advance(0.5)
+        hits += simulation.collisions['time'].tolist()
+    assert hits == [pytest.approx(expected, rel=1e-12)]

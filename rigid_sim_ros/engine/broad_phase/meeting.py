@@ -28,11 +28,14 @@ FEW = 4
 MARCH_COUNT = 6
 """Refinements of the time at which two bodies with different accelerations meet."""
 
+_LATEST = 1e100
+"""Time [s] beyond which a march goes no further: squares of it are numbers."""
+
 _CLOSER = 1e-12
 """Spheres count as wider by this part of their distance: rounding must not lose a meeting."""
 
 
-def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
+def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration, later=inf):
     """
     Return how long [s], (p,), the bounding spheres of each pair stay apart.
 
@@ -52,6 +55,8 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
         Of the same, zero of what is fixed.
     acceleration : (3, n) [m/s^2]
         Of the same, constant, zero of what is fixed.
+    later : float [s]
+        What is later need not be looked at closer.
 
     """
     if len(pairs_a) <= FEW:
@@ -76,7 +81,7 @@ def meeting_times(bodies, pairs_a, pairs_b, position, velocity, acceleration):
     result[rows] = sphere_meeting_times(
         bodies.bounding_radius.take(a) + bodies.bounding_radius.take(b),
         *(values.take(b, axis=1) - values.take(a, axis=1)
-          for values in (position, velocity, acceleration)))
+          for values in (position, velocity, acceleration)), later)
     return result
 
 
@@ -91,38 +96,62 @@ def first_falls(height, speed, acceleration):
     return np.where(height <= 0, 0.0, time)
 
 
-def sphere_meeting_times(reach, between, velocity, acceleration):
+def sphere_meeting_times(reach, between, velocity, acceleration, later=inf):
     """Return when centres `between` (3, p), in relative motion, are within `reach` [m], (p,)."""
     distance = np.sqrt(dot(between, between))
     reach = reach + _CLOSER * (distance + reach)
+    ahead = (distance - reach) * (distance + reach)
+    curved = acceleration.any(axis=0)
+    if curved.all():
+        time = _march(reach, between, velocity, acceleration, later)
+    else:
+        time = _straight(reach, ahead, between, velocity)
+        rows = np.flatnonzero(curved)
+        if len(rows):
+            time[rows] = _march(reach[rows], between[:, rows], velocity[:, rows],
+                                acceleration[:, rows], later)
+    return np.where(ahead <= 0, 0.0, time)
+
+
+def _straight(reach, ahead, between, velocity):
+    """Return the same where there is no relative acceleration; `ahead` is |d|^2 - R^2."""
     # |d + u t|^2 = R^2; the discriminant by the vector product, which does not cancel
     closing = -dot(between, velocity)
     speed = dot(velocity, velocity)
     aside = cross(between, velocity)
     square = speed * reach * reach - dot(aside, aside)
     meets = (square >= 0) & (closing > 0)
-    ahead = (distance - reach) * (distance + reach)
-    time = np.where(meets, ahead / np.where(
+    return np.where(meets, ahead / np.where(
         meets, closing + np.sqrt(np.maximum(square, 0.0)), 1.0), np.inf)
-    curved = np.flatnonzero(acceleration.any(axis=0))
-    if len(curved):
-        time[curved] = _march(reach[curved], between[:, curved], velocity[:, curved],
-                              acceleration[:, curved])
-    return np.where(ahead <= 0, 0.0, time)
 
 
-def _march(reach, between, velocity, acceleration):
-    """Return a lower bound of the same, where the relative acceleration is not zero."""
-    time = np.zeros(len(reach))
-    for _ in range(MARCH_COUNT):
-        # a direction held fixed: the distance is never less than what is seen along it
-        now = np.where(np.isfinite(time), time, 0.0)
-        there = between + now * (velocity + 0.5 * now * acceleration)
-        distance = np.sqrt(dot(there, there))
-        direction = there / np.where(distance > 0, distance, 1.0)
-        speed = dot(direction, velocity + now * acceleration)
-        time = time + first_falls(distance - reach, speed, dot(direction, acceleration))
-    return time
+def _march(reach, between, velocity, acceleration, later):
+    """Return a lower bound of the same where there is; one beyond `later` [s] is good enough."""
+    columns = reach, between, velocity, acceleration
+    result = _further(*columns, np.zeros(len(reach)))
+    soon = np.flatnonzero(result <= later)
+    if len(soon) <= FEW:
+        for row in soon.tolist():
+            result[row] = _march_of_one(*(values[..., row].tolist() for values in columns))
+        return result
+    if len(soon) < len(result):
+        columns = [values.take(soon, axis=-1) for values in columns]
+    time = result[soon]
+    for _ in range(MARCH_COUNT - 1):
+        time = _further(*columns, time)
+    result[soon] = time
+    return result
+
+
+def _further(reach, between, velocity, acceleration, time):
+    """Return bounds no earlier than those there are, `time` (p,) [s]."""
+    # a direction held fixed: the distance is never less than what is seen along it
+    now = np.where(time < _LATEST, time, 0.0)
+    there = between + now * (velocity + 0.5 * now * acceleration)
+    distance = np.sqrt(dot(there, there))
+    direction = there / np.where(distance > 0, distance, 1.0)
+    speed = dot(direction, velocity + now * acceleration)
+    return time + first_falls(distance - reach, speed, dot(direction, acceleration))
 
 
 def meeting_time(bodies, a, b, motion):
@@ -157,19 +186,36 @@ def first_fall(height, speed, acceleration):
 
 def sphere_meeting_time(reach, between, velocity, acceleration):
     """Return `sphere_meeting_times` of one pair in plain floats, vectors (3,)."""
-    if any(acceleration):
-        columns = (np.array(values)[:, np.newaxis]
-                   for values in (between, velocity, acceleration))
-        return sphere_meeting_times(np.array([reach]), *columns).item()
     x, y, z = between
     u, v, w = velocity
     distance = sqrt(x * x + y * y + z * z)
     reach += _CLOSER * (distance + reach)
     if distance <= reach:
         return 0.0
+    if any(acceleration):
+        return _march_of_one(reach, between, velocity, acceleration)
     closing = -(x * u + y * v + z * w)
     p, q, r = y * w - z * v, z * u - x * w, x * v - y * u
     square = (u * u + v * v + w * w) * reach * reach - (p * p + q * q + r * r)
     if square < 0 or closing <= 0:
         return inf
     return (distance - reach) * (distance + reach) / (closing + sqrt(square))
+
+
+def _march_of_one(reach, between, velocity, acceleration):
+    """Return `_march` of one pair in plain floats."""
+    x, y, z = between
+    u, v, w = velocity
+    p, q, r = acceleration
+    time = 0.0
+    for _ in range(MARCH_COUNT):
+        half = 0.5 * time
+        i, j, k = (x + time * (u + half * p), y + time * (v + half * q), z + time * (w + half * r))
+        distance = sqrt(i * i + j * j + k * k)
+        part = 1.0 / (distance or 1.0)
+        i, j, k = i * part, j * part, k * part
+        time += first_fall(distance - reach, i * (u + time * p) + j * (v + time * q)
+                           + k * (w + time * r), i * p + j * q + k * r)
+        if time > _LATEST:
+            break
+    return time

@@ -109,6 +109,23 @@ def test_with_different_accelerations_the_bound_is_below_the_root_and_near_it(to
     assert near > 50
 
 
+@pytest.mark.parametrize('part', [slice(None), slice(3)], ids=['many', 'few'])
+def test_what_is_later_than_asked_for_is_bounded_and_the_rest_as_ever(part):
+    count, later = 300, 0.5
+    bodies, position, velocity, acceleration = random_motions(np.random.default_rng(3), count)
+    acceleration[:, :2 * count] += np.random.default_rng(4).normal(size=(3, 2 * count))
+    a, b = np.arange(count), np.arange(count, 2 * count)
+    full = meeting_times(bodies, a, b, position, velocity, acceleration)
+    # of few that are soon each is looked at by itself
+    rows = np.flatnonzero(full <= later)[part]
+    rows = np.concatenate((rows, np.flatnonzero(full > later)))
+    found = meeting_times(bodies, a[rows], b[rows], position, velocity, acceleration, later)
+    soon = full[rows] <= later
+    assert found[soon] == pytest.approx(full[rows][soon], rel=1e-9)
+    assert (found[~soon] > later).all() and (found <= full[rows] * (1 + 1e-9)).all()
+    assert (found < 0.99 * full[rows]).any()
+
+
 def test_a_graze_by_less_than_rounding_counts_as_meeting():
     bodies = two_balls_and_a_plane()
     position = np.array([[0.0, 0, 0], [1e6, 0.75, 0], [0, 0, 0]]).T
