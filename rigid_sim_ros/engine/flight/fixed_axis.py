@@ -37,8 +37,11 @@ COSINE, SINE, HALF_RATE, QUARTER_GROWTH, RATE, GROWTH = (
 """Rows of the table; what the cosine and the sine of the half angle multiply come first."""
 
 
-BLOCK = 4096
-"""Poses evaluated at a time: what they need then stays in a core's own cache."""
+BLOCK = 16384
+"""
+Poses evaluated at a time: what they need then stays in the processor's cache. Parts that fit the
+cache of a core cost more in calls of NumPy than they gain: 4096 at a time take a third longer.
+"""
 
 ROUNDING = 1 + 1e-12
 """What bounds are multiplied by, so that they also hold for what is computed."""

@@ -16,10 +16,11 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.flight.fixed_axis import BLOCK
-
 MOST_TIMES = 32
 """Times evaluated together: of ten bodies each then costs a tenth of what it does alone."""
+
+MOST_POSES = 4096
+"""Poses evaluated together: more would delay the state that is waited for, for those to come."""
 
 
 class ReadAhead:
@@ -36,7 +37,7 @@ class ReadAhead:
         """Read `Flights`, at the times that the world expects."""
         self._flights = flights
         self._world = world
-        self._most = max(1, min(MOST_TIMES, BLOCK // max(1, world.bodies.count)))
+        self._most = max(1, min(MOST_TIMES, MOST_POSES // max(1, world.bodies.count)))
         self._changes = None
         self._times = ()
         """Those evaluated, and the one after them if there is one."""

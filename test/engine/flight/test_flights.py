@@ -179,6 +179,14 @@ def test_bodies_each_at_a_time_of_its_own_and_more_than_once():
         assert abs(together[:, place] - np.concatenate(single)).max() < 1e-13
 
 
+def test_more_bodies_than_are_evaluated_at_a_time_move_as_each_does_alone():
+    moments, arguments = assorted(BLOCK + 5)
+    flights = begun(moments, arguments)
+    last = np.arange(BLOCK - 5, BLOCK + 5)
+    whole = np.vstack(flights.poses(0.5))
+    assert abs(whole[:, last] - np.vstack(flights.poses(0.5, last))).max() < 2e-15
+
+
 def test_bodies_may_be_listed_more_often_than_there_are():
     moments, arguments = assorted(5)
     flights = begun(moments, arguments)
