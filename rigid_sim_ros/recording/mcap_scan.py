@@ -44,7 +44,8 @@ _CHUNK_FIELDS = struct.Struct('<QQQII')
 _MESSAGE_FIELDS = struct.Struct('<HIQQ')
 _FOOTER_SIZE = _PREFIX.size + 20 + len(MAGIC)
 
-_UNREADABLE = (McapError, struct.error, UnicodeDecodeError, ValueError, MemoryError)
+_UNREADABLE = (
+    McapError, struct.error, UnicodeDecodeError, ValueError, MemoryError, OverflowError)
 """What parsing a damaged record with the `mcap` package may raise."""
 
 

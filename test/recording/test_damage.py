@@ -17,6 +17,7 @@
 import os
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -123,6 +124,18 @@ def test_zeros_and_noise_in_the_middle_leave_the_rest(bag, tmp_path, run, count)
         file.write_bytes(data[:start] + (noise if number % 2 else bytes(end - start)) + data[end:])
         found = read_or_error(tmp_path / 'sound', run)
         assert found is None or found.damage or len(found.time) == 100
+
+
+def test_an_attachment_longer_than_memory_can_be_is_left_out(bag, tmp_path, run):
+    file = copy_of(bag, tmp_path)
+    data = bytearray(file.read_bytes())
+    place = data.index(b'application/')
+    type_length, = struct.unpack_from('<I', data, place - 4)
+    struct.pack_into('<Q', data, place + type_length, 2 ** 63)
+    file.write_bytes(data)
+    found = read_or_error(tmp_path / 'sound', run)
+    assert len(found.time) == 100
+    assert any('attachment' in line for line in found.damage)
 
 
 @FEW_OR_MANY
