@@ -223,8 +223,16 @@ class Newton:
 
     def _evaluate(self, free, force):
         """Return the residual (3k,) of a force, and its size in units of motion."""
-        self._at = force, free + self._matrix @ force
+        self._at = force, free + self._motion_of(force)
         return self._equations.residual(*self._at)
+
+    def _motion_of(self, force):
+        """Return the motion a force makes, and that of the compliance."""
+        if self._factor is None:
+            return self._matrix @ force
+        # by way of the bodies, where what the contacts do to each other is gone: its rounding over
+        # the compliance would else be in the forces that are redundant
+        return self._factor @ (force @ self._factor) + self._compliance * force
 
     def _extrapolated(self, force, change, tolerance):
         """
