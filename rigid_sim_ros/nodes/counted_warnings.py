@@ -32,7 +32,8 @@ class CountedWarnings:
         self._warn = warn
         self._now = now
         self._warned_at = {}
-        self._silent = {}
+        self._held_back = {}
+        """What describes the last one that was not warned of, and how many there are, by kind."""
         self.counts = {}
         """How often so far, by kind."""
 
@@ -43,19 +44,28 @@ class CountedWarnings:
 
     def add(self, kind, describe):
         """
-        Count one and warn of it if one of its kind is due.
+        Count one and warn of it if one of its kind is due; else `report` does when it is.
 
         `describe()` makes the text; it is called only for a warning that is given, because
         finding near names among ten thousand takes longer than a simulation step.
         """
         self.counts[kind] = self.counts.get(kind, 0) + 1
+        _, before = self._held_back.get(kind, (None, 0))
+        self._held_back[kind] = describe, before + 1
+        self._warn_if_due(kind)
+
+    def report(self):
+        """Warn of the last one held back of each kind that is due by now."""
+        for kind in [*self._held_back]:
+            self._warn_if_due(kind)
+
+    def _warn_if_due(self, kind):
         now = self._now()
         if now - self._warned_at.get(kind, float('-inf')) < REPEAT_AFTER:
-            self._silent[kind] = self._silent.get(kind, 0) + 1
             return
         self._warned_at[kind] = now
-        silent = self._silent.pop(kind, 0)
-        more = f' ({silent} more like it since the last warning)' if silent else ''
+        describe, count = self._held_back.pop(kind)
+        more = f' ({count - 1} more like it since the last warning)' if count > 1 else ''
         self._warn(describe() + more)
 
 

@@ -203,6 +203,8 @@ class SimulationNode:
         self._clock_source.look()
         self._namesakes.look()
         self._diagnostics.complain(self.ros.get_logger().warning)
+        self.refused.report()
+        self.late.report()
         self.recording.report(self.ros.get_logger().error)
         self.publications.send_diagnostics(
             self.session.time, self._diagnostics.statuses)

@@ -32,6 +32,22 @@ def test_one_warning_of_a_kind_until_the_interval_is_over():
     assert warnings.total == 2001
 
 
+def test_the_last_one_held_back_is_told_when_the_interval_is_over():
+    """Who mends one wrong name into another is told of that one too."""
+    texts, clock = [], [0.0]
+    warnings = CountedWarnings(texts.append, now=lambda: clock[0])
+    for text in ('first', 'second', 'third'):
+        warnings.add('kind', lambda text=text: text)
+    warnings.report()
+    assert texts == ['first']
+    clock[0] = REPEAT_AFTER
+    warnings.report()
+    assert texts[1:] == ['third (1 more like it since the last warning)']
+    clock[0] = 3 * REPEAT_AFTER
+    warnings.report()
+    assert len(texts) == 2 and warnings.total == 3
+
+
 def test_text_of_a_silent_warning_is_not_made():
     made = []
     warnings = CountedWarnings(lambda text: None, now=lambda: 0.0)
