@@ -20,15 +20,17 @@ what is, both at the start and by `ros2 param set`.
 """
 
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite
 from typing import Any, Optional
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
 from rigid_sim_ros.engine.methods import METHODS
 from rigid_sim_ros.nodes.commands import BODY_AXES, WORLD_AXES
-from rigid_sim_ros.nodes.counted_warnings import near_names_only
+from rigid_sim_ros.nodes.counted_warnings import near_names_only, shown
 from rigid_sim_ros.nodes.executors import AUTO, EXECUTORS
 from rigid_sim_ros.recording import DROP, WAIT
 from rigid_sim_ros.recording.mcap_file import COMPRESSIONS
@@ -96,7 +98,8 @@ PARAMETERS = (
     Row('real_time_factor', 1.0, 'simulated seconds per second; 0 is as fast as possible', '',
         0.0, 100.0),
     Row('start_paused', False, 'begin paused', read_only=True),
-    Row('pause_on_collision', False, 'pause at the instant at which bodies first collide'),
+    Row('pause_on_collision', False, 'pause at the instant at which bodies first collide; if '
+        'they were in lasting contact, at the end of the step'),
     Row('step_duration', 0.01, 'simulated time of a call of `~/step`', 's', 1e-6, 60.0),
     Row('reset_time', False, '`~/reset` sets simulated time to zero too; otherwise it runs on'),
     Row('command_axes', WORLD_AXES, 'axes of the vectors in commands; body: turned into world '
@@ -106,8 +109,8 @@ PARAMETERS = (
     Row('command_timing', ARRIVAL, 'when commands take effect: at the simulated time at which '
         'they arrive, or at the one in their stamp', choices=(ARRIVAL, STAMP)),
     Row('world_frame', 'world', 'frame_id of everything published', read_only=True),
-    Row('publish_clock', True, 'publish simulated time on `/clock`; if not set, only while '
-        'nobody else does'),
+    Row('publish_clock', True, 'publish simulated time on `/clock`; unless it is set, '
+        'only while nobody else does'),
     Row('publish_tf', False, 'publish the poses on `/tf` too, with the names of bodies as frames; '
         'needs tf2_msgs', read_only=True),
     Row('reliability', 'reliable', 'quality of service of poses, states and markers',
@@ -159,7 +162,7 @@ class Parameters:
             node.declare_parameter(row.name, value, row.descriptor(), ignore_override=True)
             setattr(self, row.name, value)
         self._changed = {}
-        node.add_pre_set_parameters_callback(_whole_numbers_as_real)
+        node.add_pre_set_parameters_callback(partial(_prepared, node))
         node.add_on_set_parameters_callback(_check)
         node.add_post_set_parameters_callback(self._take)
 
@@ -177,16 +180,27 @@ class Parameters:
 
 def unknown_parameter_text(name):
     """Say that there is no parameter of a name, and which one may be meant."""
+    return f'there is no parameter {name!r}: it has no effect' + _near(name)
+
+
+def _near(name):
     near = near_names_only(name, _ROWS)
-    return f'there is no parameter {name!r}: it has no effect' + (f'; {near}' if near else '')
+    return f'; {near}' if near else ''
 
 
 def _nothing():
     pass
 
 
-def _whole_numbers_as_real(parameters):
-    """Turn integers into doubles where a double is declared: `publish_rate 50` is meant well."""
+def _prepared(node, parameters):
+    """
+    Turn integers into doubles where a double is declared: `publish_rate 50` is meant well.
+
+    Refuses names that are not declared: rclpy would too, but without saying which.
+    """
+    for parameter in parameters:
+        if not node.has_parameter(parameter.name):
+            raise ParameterNotDeclaredException(f'{shown(parameter.name)}{_near(parameter.name)}')
     return [
         Parameter(parameter.name, value=float(parameter.value))
         if parameter.type_ == Parameter.Type.INTEGER and parameter.name in _ROWS

@@ -83,18 +83,18 @@ def _parser():
                              'an .mcap file)')
     parser.add_argument('-o', '--output', required=True, type=_output,
                         help='the file to write: .png is a picture, .gif and .mp4 are films')
-    parser.add_argument('--time', type=_times, default=[('', 0.0)], metavar='T',
+    parser.add_argument('--time', type=_times, default=[('begin', 0.0)], metavar='T',
                         help='simulated time of the picture, or start of the film [s]; several, '
                              'separated by commas, give pictures side by side; collision is the '
-                             'time of the first one, also collision+0.5; default 0')
+                             'time of the first one, also collision+0.5; default: the beginning')
     parser.add_argument('--duration', type=_number(0.0, 1e6), metavar='T',
                         help='length of the film [s]; default 5, or to the '
                              'end of the recording')
     parser.add_argument('--fps', type=_number(0.1, 240), default=25.0, metavar='N',
                         help='pictures a second of a film, which shows real time; default 25')
     parser.add_argument('--exposures', type=_exposures, default=1, metavar='N',
-                        help='show so many times in one picture, from 0 to --time, earlier ones '
-                             'fainter; default 1')
+                        help='show so many times in one picture, from the beginning to --time, '
+                             'earlier ones fainter; default 1')
     parser.add_argument('--size', type=_size, default=(800, 500), metavar='WxH',
                         help='of each picture, in pixels; default 800x500')
     parser.add_argument('--view', type=_view, action='append', metavar='A,E',
@@ -130,7 +130,7 @@ def _times(text):
         match = re.fullmatch(r'\s*(collision)?\s*([-+]?[0-9.]*(?:e[-+]?[0-9]+)?)\s*', part)
         base, offset = match.groups() if match else ('', '')
         try:
-            times.append((base, float(offset or ('0' if base else ''))))
+            times.append((base or '', float(offset or ('0' if base else ''))))
         except ValueError:
             raise argparse.ArgumentTypeError(
                 f'{part!r} must be a time in seconds, or collision, collision+0.5') from None

@@ -54,8 +54,8 @@ class States:
 class Motion:
     """The bodies and planes of a scene; how they move is up to the subclass."""
 
-    end = np.inf
-    """Time [s] after which nothing is known."""
+    begin, end = 0.0, np.inf
+    """Times [s] before and after which nothing is known."""
 
     def __init__(self, scene):
         self.bodies = ordered(scene)
@@ -145,7 +145,7 @@ class RecordedMotion(Motion):
         self._position = recorded.position[chosen, :self.moving_count]
         self._orientation = recorded.orientation[chosen, :self.moving_count]
         self._collisions = recorded.collisions[recorded.collision_run == run]
-        self.end = float(self._time[-1])
+        self.begin, self.end = float(self._time[0]), float(self._time[-1])
 
     def states(self, times, progress=iter):
         """Return what was recorded nearest to the times, (T,) [s]."""

@@ -30,6 +30,9 @@ MOST_FRAMES = 20_000
 DEFAULT_DURATION = 5.0
 """Of the film of a scene [s]; that of a recording is all of it."""
 
+ROUNDING = 1e-9
+"""Of recorded times [s]."""
+
 DEFAULT_VIEW = (300.0, 20.0)
 """Azimuth and elevation [degrees]: from the front, x to the right, and a little above."""
 
@@ -57,7 +60,7 @@ def show(options):
 
 def _picture(options, motion, times):
     """Write a picture: a column for each time, a row for each view."""
-    moments = [np.linspace(0, time, options.exposures) if options.exposures > 1
+    moments = [np.linspace(motion.begin, time, options.exposures) if options.exposures > 1
                else np.array([time]) for time in times]
     every, indices = np.unique(np.concatenate(moments), return_inverse=True)
     states = motion.states(every, _progress('simulating'))
@@ -100,11 +103,14 @@ def _progress(what):
 
 
 def _resolved(times, motion):
-    """Return the times [s], with those that are given relative to the first collision."""
-    collision = motion.first_collision() if any(base for base, _ in times) else 0.0
-    resolved = [collision + offset if base else offset for base, offset in times]
+    """Return the times [s] asked for, each a base to start from and what is added to that."""
+    begin, end = motion.begin, motion.end
+    bases = {'': 0.0, 'begin': begin}
+    if any(base == 'collision' for base, _ in times):
+        bases['collision'] = motion.first_collision()
+    resolved = [bases[base] + offset for base, offset in times]
     for time in resolved:
-        if not 0 <= time <= motion.end + 1e-9:
-            allowed = '0 or more' if np.isinf(motion.end) else f'from 0 to {motion.end:g} s'
+        if not begin - ROUNDING <= time <= end + ROUNDING:
+            allowed = '0 or more' if np.isinf(end) else f'from {begin:g} to {end:g} s'
             raise ViewError(f'--time {time:g} is not allowed; must be {allowed}')
     return resolved

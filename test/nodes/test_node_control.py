@@ -88,6 +88,15 @@ def test_paused_time_stands_still_and_steps_are_exact(paused):
         assert_allclose(message.poses[0].position.z, 0.6 - 0.5 * GRAVITY * time ** 2, atol=1e-12)
 
 
+def test_a_parameter_that_does_not_exist_is_refused_by_name(paused):
+    client, _ = paused
+    near = '; near names: publish_rate, publish_tf, publish_clock'
+    for name, hint in (('publish_rat', near), ('gravity', '')):
+        result = set_parameter(client, name, 1.0)
+        assert not result.successful
+        assert result.reason.endswith(f"undeclared parameter(s): '{name}'{hint}")
+
+
 def test_long_step_publishes_every_state_of_it(paused):
     client, poses = paused
     assert set_parameter(client, 'step_duration', 0.045).successful

@@ -23,6 +23,7 @@ from rigid_sim_ros.engine import events
 from rigid_sim_ros.recording import Recorder, RecordingError
 from rigid_sim_ros.recording.journal import encode_bodies
 from rigid_sim_ros.scene import load_scene, SceneError
+from rigid_sim_ros.view.command_line import main
 from rigid_sim_ros.view.errors import ViewError
 from rigid_sim_ros.view.motion import CONTACT_SHOWN, open_motion, SimulatedMotion
 
@@ -62,8 +63,8 @@ def test_the_first_collision_and_how_long_it_is_shown():
 
 @pytest.fixture
 def bag(tmp_path):
-    """Return a function that records states of two bodies: runs of so many steps."""
-    def record(*runs, scene=SCENE, body_count=2):
+    """Return a function that records states of two bodies: runs of so many steps from a step."""
+    def record(*runs, scene=SCENE, body_count=2, begin=0):
         poses = messages.PoseArrayEncoder('world', body_count)
         collisions = messages.CollisionEncoder('world')
         event = np.zeros(1, messages.COLLISION_TYPE)
@@ -71,7 +72,7 @@ def bag(tmp_path):
         with Recorder(tmp_path / 'bag', ROWS, scene=scene, options={}) as recorder:
             for run, count in enumerate(runs):
                 for step in range(count):
-                    time_ns = step * PERIOD_NS
+                    time_ns = (begin + step) * PERIOD_NS
                     position = np.full((body_count, 3), 100.0 * run + step)
                     orientation = np.tile((0.0, 0.0, 0.0, 1.0), (body_count, 1))
                     recorder.write('/rigid_sim/poses', time_ns,
@@ -109,6 +110,18 @@ def test_a_recording_of_one_state(bag):
     assert motion.states([0.0, 1.0]).position[:, 0, 0].tolist() == [0, 0]
     with pytest.raises(ViewError, match='holds no collision'):
         motion.first_collision()
+
+
+def test_a_recording_that_was_begun_later(bag, tmp_path, capsys):
+    path, picture = bag(6, begin=50), str(tmp_path / 'a.png')
+    assert open_motion(path).begin == pytest.approx(1.0)
+    for time in ([], ['--time', '1'], ['--time', '1.1'], ['--time', '1.05', '--exposures', '3']):
+        assert main([path, '-o', picture, '--size', '96x64', *time]) == 0
+    assert capsys.readouterr().err == ''
+    for time in ('0', '0.99', '1.11'):
+        assert main([path, '-o', picture, '--time', time]) == 2
+        assert capsys.readouterr().err == (
+            f'rigid_sim_view: --time {time} is not allowed; must be from 1 to 1.1 s\n')
 
 
 def test_refusals(bag, tmp_path):
