@@ -20,6 +20,7 @@ A plane is a fixed body at the origin, so that no stage needs a branch for it.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -84,6 +85,12 @@ class Bodies:
     def count(self):
         """Count of all columns: moving bodies, fixed bodies and planes."""
         return len(self.names)
+
+    @cached_property
+    def kind_numbers(self):
+        """Return a number (n,) int for each kind; what has the same kind has the same number."""
+        numbers = {kind: number for number, kind in enumerate(dict.fromkeys(self.kinds))}
+        return np.array([numbers[kind] for kind in self.kinds], dtype=int)
 
 
 def ordered(scene):

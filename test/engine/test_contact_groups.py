@@ -16,12 +16,16 @@
 
 import numpy as np
 
-from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES, newton_forces
+import pytest
+
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import (
+    GroupNewton, MOST_BODIES, newton_steps)
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import PointRows
 from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones, largest_eigenvalue
 from rigid_sim_ros.engine.solvers.accelerated_groups import (
     accelerated_groups, largest_eigenvalues)
 from rigid_sim_ros.engine.solvers.blocks import Block, BlockRows
+from rigid_sim_ros.engine.solvers.problem import ContactProblem
 
 COUNTS = 4, 7, 2
 """Contacts of each group, all of one body with the ground."""
@@ -172,13 +176,66 @@ def column(height):
     return rows, np.array(slots).T, free
 
 
-def test_a_column_is_solved_by_newtons_method():
-    """The lowest contacts hold the whole column, the others what is above them: momentum."""
-    height = MOST_BODIES
-    rows, slots, free = column(height)
-    near = np.zeros((3, 4 * height))
+def groups_of(heights, random):
+    """Return (`GroupNewton`, free motion, forces close by) of columns, points in random order."""
+    columns = [column(height) for height in heights]
+    members, slots, body_groups = sum(heights), [], []
+    for group, (height, (_, of_column, _)) in enumerate(zip(heights, columns)):
+        first = sum(heights[:group])
+        slots.append(np.where(of_column == height, members, of_column + first))
+        body_groups += height * [group]
+    rows, free = (np.concatenate(parts, axis=1) for parts in list(zip(*columns))[::2])
+    groups = np.repeat(np.arange(len(heights)), [4 * height for height in heights])
+    order = random.permutation(len(groups))
+    newton = GroupNewton(rows[:, order], np.concatenate(slots, axis=1)[:, order], groups[order],
+                         np.array([*body_groups, len(heights)]), np.full(len(groups), 0.5))
+    near = np.zeros_like(free)
     near[0] = 1.0
-    force, iterations = newton_forces(rows, slots, free, np.full(4 * height, 0.5), near, 1e-10)
-    assert iterations > 0
-    held = force.reshape(3, -1)[0].reshape(height, 4).sum(axis=1)
-    np.testing.assert_allclose(held, np.arange(height, 0, -1), rtol=1e-8)
+    return newton, free[:, order], near, groups[order]
+
+
+@pytest.mark.parametrize('heights', [(MOST_BODIES,), (3, 3), (2, 5, 2, 5, 2, 1)])
+def test_columns_are_solved_by_newtons_method(heights):
+    """The lowest contacts hold the whole column, those above what is above them: momentum."""
+    newton, free, forces, groups = groups_of(heights, np.random.default_rng(0))
+    used, solved = newton.solve(free, forces, np.full(len(heights), 1e-10))
+    assert solved.all() and (used > 0).all()
+    for group, height in enumerate(heights):
+        held = np.sort(forces[0, groups == group])
+        np.testing.assert_allclose(held, np.repeat(np.arange(1, height + 1), 4) / 4, rtol=1e-8)
+    np.testing.assert_allclose(forces[1:], 0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_whole_steps_solve_what_they_say(seed):
+    """Of problems at random they find a quarter, to the tolerance in each of the conditions."""
+    random = np.random.default_rng(seed)
+    count, points = 40, 4
+    factor = random.normal(size=(3, count, points, 9))
+    free, friction = random.normal(size=(3, count, points)), random.uniform(0, 1, (count, points))
+    free[0] -= 1.0
+    force, used = newton_steps(factor, free, friction, np.zeros_like(free), np.full(count, 1e-9))
+    assert 4 * np.count_nonzero(used) >= count
+    for one in np.flatnonzero(used):
+        rows = factor[:, one].reshape(3 * points, -1)
+        problem = ContactProblem(rows @ rows.T, free[:, one].ravel(), friction[one],
+                                 np.zeros(points), np.zeros((2, points)))
+        found = force[:, one].ravel()
+        left = problem.residual(found, problem.free + problem.response @ found)
+        assert np.abs(left).max() < 1e-9
+
+
+def test_what_whole_steps_leave_is_found_alone():
+    """Of problems at random most."""
+    random = np.random.default_rng(0)
+    tried = found = 0
+    for _ in range(10):
+        rows, slots = random.normal(size=(3, 8, 2, 6)), np.repeat(((0, 1), (2, 2)), 4, axis=1)
+        rows[:, :, 1] = 0.0
+        newton = GroupNewton(rows, slots, np.repeat((0, 1), 4), np.array((0, 1, 2)),
+                             random.uniform(0, 1, 8))
+        free = random.normal(size=(3, 8)) - np.array(((1,), (0,), (0,)))
+        used, solved = newton.solve(free, np.zeros((3, 8)), np.full(2, 1e-8))
+        assert (used > 0).all()
+        tried, found = tried + 2, found + solved.sum()
+    assert found > 0.6 * tried

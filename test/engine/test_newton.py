@@ -81,7 +81,8 @@ def test_systems_of_contacts_that_all_stick():
     force = np.concatenate((np.full(COUNT, 50.0), np.zeros(2 * COUNT)))
     derivatives = equations.derivatives(force, random.normal(size=3 * COUNT))
     expected = np.linalg.solve(matrix, residual / steps[[0, 1, 1]].ravel())
-    for system in (DenseSystem(derivatives, matrix), FactoredSystem(derivatives, factor, 1e-2)):
+    for system in (DenseSystem(derivatives, matrix),
+                   FactoredSystem(derivatives, factor.reshape(3, COUNT, 12), 1e-2)):
         np.testing.assert_allclose(system.solve(residual), expected, rtol=1e-8)
 
 
@@ -93,11 +94,36 @@ def test_factored_systems_are_dense_ones(seed):
         *random.normal(size=(2, 3 * COUNT)))
     factor, compliance = random.normal(size=(3 * COUNT, 12)), 1e-2
     dense = DenseSystem(derivatives, factor @ factor.T + compliance * np.eye(3 * COUNT))
-    factored = FactoredSystem(derivatives, factor, compliance)
+    factored = FactoredSystem(derivatives, factor.reshape(3, COUNT, 12), compliance)
     residual = random.normal(size=3 * COUNT)
-    np.testing.assert_allclose(factored.solve(residual), dense.solve(residual), rtol=1e-9)
+    # solved the first time, by the inverse the second
+    for _ in range(2):
+        np.testing.assert_allclose(factored.solve(residual), dense.solve(residual), rtol=1e-9)
     np.testing.assert_allclose(factored.of_motion(residual), dense.of_motion(residual),
                                rtol=1e-14, atol=1e-15)
+
+
+def test_factored_systems_together_are_those_alone():
+    """Two problems of four contacts each, with compliances of their own."""
+    random = np.random.default_rng(0)
+    shape = 3, 2, 4
+    steps, friction = random.uniform(0.5, 2, (2, 8)), random.uniform(0, 1, 8)
+    force, motion, residual = random.normal(size=(3, *shape))
+    factor, compliance = random.normal(size=(*shape, 6)), np.array([[1e-2], [3e-2]])
+
+    def derivatives(part):
+        places = np.arange(8).reshape(2, 4)[part].ravel()
+        equations = ManyEquations(steps[:, places], friction[places], np.zeros(len(places)),
+                                  np.zeros((2, len(places))))
+        return equations.derivatives(force[:, part].ravel(), motion[:, part].ravel())
+
+    together = FactoredSystem(derivatives(slice(None)), factor, compliance)
+    for one in range(2):
+        alone = FactoredSystem(derivatives(one), factor[:, one], compliance[one].item())
+        for method in ('solve', 'of_motion', 'solve'):
+            np.testing.assert_allclose(
+                getattr(together, method)(residual.ravel()).reshape(shape)[:, one].ravel(),
+                getattr(alone, method)(residual[:, one].ravel()), rtol=1e-10)
 
 
 def test_forces_in_a_tower():

@@ -237,8 +237,11 @@ def memory_of(islands, pairs_a, pairs_b):
     Of these only: an island that also kept the others' would hand them on, and all memory would
     double whenever islands are found anew.
     """
-    wanted = set(zip(pairs_a.tolist(), pairs_b.tolist()))
     together = {}
+    islands = [island for island in islands if island.forces]
+    if not islands:
+        return together
+    wanted = set(zip(pairs_a.tolist(), pairs_b.tolist()))
     for island in islands:
         for half, (pairs, points, world) in island.forces.items():
             kept = [place for place, (a, b) in enumerate(pairs)

@@ -20,6 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from rigid_sim_ros.engine.contacts import Contacts, FACE_A, FACE_B
+from rigid_sim_ros.engine.graph import alike
 from rigid_sim_ros.engine.narrow_phase.plain_pairs import PLAIN_TESTS, PlainPairs
 from rigid_sim_ros.engine.narrow_phase.solids import Solids
 from rigid_sim_ros.engine.narrow_phase.table import PairOfShapes, PAIRS
@@ -75,7 +76,7 @@ class PairGroups:
         self.pairs_a = np.asarray(pairs_a, dtype=int)
         self.pairs_b = np.asarray(pairs_b, dtype=int)
         self.groups = []
-        for kinds, where in _by_kinds(bodies.kinds, self.pairs_a, self.pairs_b).items():
+        for kinds, where in _by_kinds(bodies, self.pairs_a, self.pairs_b):
             swapped = kinds not in PAIRS
             kinds = kinds[::-1] if swapped else kinds
             row = PAIRS.get(kinds)
@@ -141,9 +142,9 @@ def swap(contacts):
                     contacts.edge_b, contacts.edge_a)
 
 
-def _by_kinds(kinds, pairs_a, pairs_b):
-    """Return which pairs, (p,) int, have each combination of kinds that occurs."""
-    where = {}
-    for pair, (a, b) in enumerate(zip(pairs_a.tolist(), pairs_b.tolist())):
-        where.setdefault((kinds[a], kinds[b]), []).append(pair)
-    return {kinds: np.array(pairs) for kinds, pairs in where.items()}
+def _by_kinds(bodies, pairs_a, pairs_b):
+    """Return (kinds of a and b, which pairs (p,) int have them) for each two kinds that occur."""
+    numbers, kinds = bodies.kind_numbers, bodies.kinds
+    combinations = numbers[pairs_a] * bodies.count + numbers[pairs_b]
+    return [((kinds[pairs_a[pairs[0]]], kinds[pairs_b[pairs[0]]]), pairs)
+            for _, pairs in alike(combinations)]

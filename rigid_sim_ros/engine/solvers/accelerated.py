@@ -38,7 +38,7 @@ _TESTED = 4
 
 class Cones:
     """
-    What is allowed of forces in flat arrays (3k,): k normals, k first and k second tangents.
+    What is allowed of forces, (3k,) or (3, k): k normals, k first and k second tangents.
 
     Parameters
     ----------
@@ -58,8 +58,7 @@ class Cones:
 
     def project(self, force):
         """Draw forces back onto what is allowed, in place."""
-        count = len(self._friction)
-        normal, first, second = force[:count], force[count:2 * count], force[2 * count:]
+        normal, first, second = force.reshape(3, -1)
         np.maximum(normal, self._floor, out=normal)
         length, square = self._length, self._square
         np.multiply(first, first, out=length)

@@ -69,7 +69,7 @@ def accelerated_groups(rows, cones, groups, step, free, force, tolerance, iterat
             solved |= running & (race.residuals(change) <= tolerance)
             leaving = running & (solved | (iteration >= iterations))
             leaves = leaving[race.groups]
-            result.reshape(3, -1)[:, places[leaves]] = there.reshape(3, -1)[:, leaves]
+            result.reshape(3, -1)[:, places[leaves]] = there[:, leaves]
             running = running & ~leaving
             if not running.any():
                 return result, used, solved
@@ -77,74 +77,81 @@ def accelerated_groups(rows, cones, groups, step, free, force, tolerance, iterat
 
 
 class _Race:
-    """Forces of groups at an iteration, see `accelerated`; arguments of `accelerated_groups`."""
+    """
+    Forces of groups at an iteration, see `accelerated`; arguments of `accelerated_groups`.
+
+    Vectors by row are kept as (3, k).
+    """
 
     def __init__(self, rows, cones, groups, step, free, force):
-        self._rows, self._cones, self._free = rows, cones, free
+        self._rows, self._cones, self._free = rows, cones, free.reshape(3, -1)
         self.groups = groups
         self._step = step.copy()
-        self._steps = self._spread(self._step)
+        self._steps = step[groups]
         self._theta = np.ones(len(step))
-        self._here = force.copy()
+        self._here = force.reshape(3, -1).copy()
         cones.project(self._here)
         self._ahead = self._here
-        self._made_here = self._made_ahead = rows.response(self._here)
+        self._made_here = self._made_ahead = self._response(self._here)
 
     def projected(self):
-        """Return the forces (3k,) after a projected step, and how much they change in it."""
-        there = self._ahead - self._steps * (self._made_ahead + self._free)
+        """Return the forces (3, k) after a projected step, and how much they change in it."""
+        there = self._made_ahead + self._free
+        there *= self._steps
+        np.subtract(self._ahead, there, out=there)
         self._cones.project(there)
         return there, there - self._ahead
 
     def residuals(self, change):
         """Return the largest change of motion in each group, (g,)."""
         largest = np.zeros(len(self._step))
-        np.maximum.at(largest, self.groups, np.abs(change).reshape(3, -1).max(axis=0))
+        np.maximum.at(largest, self.groups, np.abs(change).max(axis=0))
         return largest / self._step
 
     def select(self, kept):
         """Go on with the contacts (k,) bool only."""
-        def left(vector):
-            return vector.reshape(3, -1)[:, kept].ravel()
-
-        self.groups = self.groups[kept]
+        self.groups, self._steps = self.groups[kept], self._steps[kept]
         self._rows, self._cones = self._rows.select(kept), self._cones.select(kept)
-        self._free, self._steps = left(self._free), left(self._steps)
-        self._here, self._made_here = left(self._here), left(self._made_here)
-        self._ahead, self._made_ahead = left(self._ahead), left(self._made_ahead)
+        # row by row, as [:, kept] would not leave them
+        self._free, self._here, self._made_here, self._ahead, self._made_ahead = (
+            vector.compress(kept, axis=1) for vector in (
+                self._free, self._here, self._made_here, self._ahead, self._made_ahead))
 
     def go_on(self, there, change):
         """Go on from projected forces, with momentum or without, or back with a shorter step."""
-        made_there = self._rows.response(there)
-        curvature = self._sums(change * (made_there - self._made_ahead))
-        size = self._sums(change * change)
+        made_there = self._response(there)
         moved = there - self._here
-        turned = self._sums(change * moved) < 0.0
+        size, curvature, way = (self._sums(change, other) for other in (
+            change, made_there - self._made_ahead, moved))
+        turned = way < 0.0
         too_long = (0.0 < size) & (size < curvature * self._step)
         theta = self._theta
         following = 2.0 * theta / (theta + np.sqrt(theta * theta + 4.0))
         weight = theta * (1.0 - theta) / (theta * theta + following)
         weight[turned] = 0.0
         self._theta = np.where(turned | too_long, 1.0, following)
-        weights = self._spread(weight)
-        ahead = there + weights * moved
-        made_ahead = made_there + weights * (made_there - self._made_here)
+        weights = weight[self.groups]
+        moved *= weights
+        moved += there
+        ahead, made_ahead = moved, made_there - self._made_here
+        made_ahead *= weights
+        made_ahead += made_there
         if too_long.any():
             self._step[too_long] = SHORTER * size[too_long] / curvature[too_long]
-            self._steps = self._spread(self._step)
-            back = self._spread(too_long)
+            self._steps = self._step[self.groups]
+            back = too_long[self.groups]
             ahead, there = np.where(back, self._here, (ahead, there))
             made_ahead, made_there = np.where(back, self._made_here, (made_ahead, made_there))
         self._here, self._made_here = there, made_there
         self._ahead, self._made_ahead = ahead, made_ahead
 
-    def _spread(self, values):
-        """Return values (g,) of groups for each of their rows, (3k,)."""
-        return np.tile(values[self.groups], 3)
+    def _response(self, force):
+        """Return the motion (3, k) that forces (3, k) make."""
+        return self._rows.response(force.ravel()).reshape(3, -1)
 
-    def _sums(self, values):
-        """Return the sums (g,) of values (3k,) over the rows of groups."""
-        return np.bincount(self.groups, values.reshape(3, -1).sum(axis=0), len(self._step))
+    def _sums(self, one, other):
+        """Return the sums (g,) of products (3, k) over the rows of groups."""
+        return np.bincount(self.groups, np.einsum('ik,ik->k', one, other), len(self._step))
 
 
 def largest_eigenvalues(response, vector, groups, group_count, rounds):

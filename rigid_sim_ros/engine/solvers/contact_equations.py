@@ -20,6 +20,7 @@ above its floor and the friction inside its disc. For few contacts in plain floa
 other, which takes a third of the time of arrays.
 """
 
+from functools import cached_property
 from math import sqrt
 from typing import NamedTuple
 
@@ -79,7 +80,7 @@ class FewEquations:
 
     def __init__(self, steps, friction, floor, slip):
         """See the class."""
-        self._constants = list(zip(*steps, friction.tolist(), floor.tolist(), *slip.tolist()))
+        self._constants = _constants_of(steps, friction, floor, slip)
 
     def residual(self, force, motion):
         """Return what is left of the conditions, (3k,), and its size in units of motion."""
@@ -137,11 +138,15 @@ class ManyEquations(FewEquations):
 
     def __init__(self, steps, friction, floor, slip):
         """See the class."""
-        super().__init__(steps.tolist(), friction, floor, slip)
         self._steps = steps[[0, 1, 1]]
         self._friction, self._floor, self._slip = friction, floor, slip
         slips = slip.any(axis=0)
         self._slips = slips if slips.any() else None
+
+    @cached_property
+    def _constants(self):
+        """Return what is given of each contact, in plain floats: only `sticking` takes them."""
+        return _constants_of(self._steps[:2].tolist(), self._friction, self._floor, self._slip)
 
     def residual(self, force, motion):
         """Return what is left of the conditions, (3k,), and its size in units of motion."""
@@ -185,6 +190,11 @@ class ManyEquations(FewEquations):
             unit = np.where(self._slips, -self._slip, unit)
             turn = np.where(self._slips, 0.0, turn)
         return limit, unit, turn, slides
+
+
+def _constants_of(steps, friction, floor, slip):
+    """Return what is given of each contact."""
+    return list(zip(*steps, friction.tolist(), floor.tolist(), *slip.tolist()))
 
 
 def _derivatives(rows):

@@ -56,10 +56,10 @@ A response is taken in factors if it has so many times more rows than these have
 many rows (measured).
 """
 
-_STALLED = 0.5
+STALLED = 0.5
 """A pass that changes the force by more than this part of what the last did gets nowhere."""
 
-_SETTLED = 1e-9
+SETTLED = 1e-9
 """Of the free motion: residual at which the choice of forces is made."""
 
 _FEW_VALUES = 60
@@ -113,6 +113,11 @@ def solve_newton(problem, guess, accuracy):
     return Solution(best, used, best)
 
 
+def rounding_of(count, largest):
+    """Return the rounding of the motion of so many contacts per force, by the largest response."""
+    return 5e-16 * count ** 1.5 * largest
+
+
 def _largest(values):
     """Return the largest size of some values (n,)."""
     if len(values) > _FEW_VALUES:
@@ -155,8 +160,8 @@ class Newton:
         if (factor is not None and 3 * count >= _FACTORED_ROWS
                 and factor.shape[1] * _FACTORED <= 3 * count):
             self._factor = factor
-        # the rounding of matrix @ force is a floor below which no residual gets
-        self._rounding = 5e-16 * count ** 1.5 * _largest(diagonal)
+            self._columns = factor.reshape(3, count, -1)
+        self._rounding = rounding_of(count, _largest(diagonal))
         self._system = self._at = None
 
     def refined(self, guess, accuracy):
@@ -169,7 +174,7 @@ class Newton:
         tolerance = accuracy * self._scale
         reference, done = self.floor, False
         force = self.first = self._iterate(reference, self._start() if guess is None else guess,
-                                           max(tolerance, _SETTLED * self._scale))
+                                           max(tolerance, SETTLED * self._scale))
         if force is None:
             return None
         for _ in range(canonical.MAX_PASSES):
@@ -187,7 +192,7 @@ class Newton:
 
     def settled(self, guess):
         """Return the force with the compliance, from a guess, or None."""
-        return self._iterate(self.floor, guess, _SETTLED * self._scale)
+        return self._iterate(self.floor, guess, SETTLED * self._scale)
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -255,7 +260,7 @@ class Newton:
                 before, size = size, _largest(change)
                 if self._compliance * size <= tolerance:
                     break
-                if size > _STALLED * before:
+                if size > STALLED * before:
                     return reference, force, True
         except np.linalg.LinAlgError:
             pass
@@ -279,4 +284,4 @@ class Newton:
         if self._factor is None:
             self._system = DenseSystem(derivatives, self._matrix)
         else:
-            self._system = FactoredSystem(derivatives, self._factor, self._compliance)
+            self._system = FactoredSystem(derivatives, self._columns, self._compliance)

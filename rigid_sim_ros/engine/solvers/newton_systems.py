@@ -85,60 +85,76 @@ class FactoredSystem:
     A system of many contacts between few bodies, with a response that is factor @ factor.T.
 
     By the formula of Woodbury it takes a matrix with a row and a column for each freedom of the
-    bodies, where `DenseSystem` has three for each contact.
+    bodies, where `DenseSystem` has three for each contact. Systems of one shape that have nothing
+    to do with each other can be taken together, with one more axis before that of the contacts.
 
     Parameters
     ----------
     derivatives : contact_equations.Derivatives
-    factor : (3k, n)
+        Of the contacts of all systems.
+    factor : (3, k, n) or (3, g, k, n)
         See `ContactProblem`.
-    compliance : float
+    compliance : float or (g, 1)
         Above zero.
 
     """
 
     def __init__(self, derivatives, factor, compliance):
         """Raise LinAlgError if a contact by itself is singular; never with a compliance."""
+        self._shape = (*factor.shape[:-1], 1)
+        points = factor.shape[1:-1]
         own, cross, by_force = derivatives
-        if cross is None:
-            cross = np.zeros(len(own) // 3)
-        self._own, self._cross = own.reshape(3, -1, 1), cross[:, None]
-        by_force = by_force.reshape(7, -1)
-        self._pull = by_force[5:, :, None]
-        normal, t11, t22 = by_force[:3] + compliance * own.reshape(3, -1)
+        own = own.reshape(3, *points)
+        cross = np.zeros(points) if cross is None else cross.reshape(points)
+        self._own, self._cross = own[..., None], cross[..., None]
+        by_force = by_force.reshape(7, *points)
+        self._pull = by_force[5:, ..., None]
+        normal, t11, t22 = by_force[:3] + compliance * own
         t12 = by_force[3] + compliance * cross
         determinant = t11 * t22 - t12 * t12
         if not normal.all() or not determinant.all():
             raise np.linalg.LinAlgError
-        self._normal = 1 / normal[:, None]
-        self._tangential = (np.array((t22, -t12, t11)) / determinant)[:, :, None]
-        self._factor = factor
-        count, size = len(cross), factor.shape[1]
-        # (3, k) of rows of the factor, as columns of residuals
-        spread = self._without_response(self._of_motion(factor.reshape(3, count, size)))
-        self._spread = spread.reshape(3 * count, size)
-        self._matrix = factor.T @ self._spread
-        self._matrix.ravel()[::size + 1] += 1.0
+        self._normal = 1 / normal[..., None]
+        self._tangential = (np.array((t22, -t12, t11)) / determinant)[..., None]
+        self._transposed = factor.swapaxes(-1, -2)
+        # rows of the factor, as columns of residuals
+        self._spread = self._without_response(self._of_motion(factor))
+        self._matrix = self._on_bodies(self._spread)
+        diagonal = np.arange(factor.shape[-1])
+        self._matrix[..., diagonal, diagonal] += 1.0
+        self._is_spared, self._inverse = True, None
 
     def solve(self, residual):
         """Return the change of force (3k,) that makes a residual."""
-        alone = self._without_response(residual.reshape(3, -1, 1)).ravel()
-        # less than to invert it, as the products around it take as long
-        return alone - self._spread @ np.linalg.solve(self._matrix, self._factor.T @ alone)
+        alone = self._without_response(residual.reshape(self._shape))
+        return (alone - self._spread @ self._solved(self._on_bodies(alone))).ravel()
 
     def of_motion(self, motion):
         """Return the residual (3k,) that a motion makes."""
-        return self._of_motion(motion.reshape(3, -1, 1)).ravel()
+        return self._of_motion(motion.reshape(self._shape)).ravel()
+
+    def _solved(self, right):
+        """Return the solutions (..., n, 1) of the matrix for right sides (..., n, 1)."""
+        if self._is_spared:
+            self._is_spared = False
+            return np.linalg.solve(self._matrix, right)
+        if self._inverse is None:
+            self._inverse = np.linalg.inv(self._matrix)
+        return self._inverse @ right
+
+    def _on_bodies(self, force):
+        """Return what forces (3, ..., k, .) do to bodies, (..., n, .)."""
+        return (self._transposed @ force).sum(axis=0)
 
     def _of_motion(self, motion):
-        """Return the residuals (3, k, .) that motions (3, k, .) make."""
+        """Return the residuals (3, ..., k, .) that motions (3, ..., k, .) make."""
         residual = self._own * motion
         residual[1] += self._cross * motion[2]
         residual[2] += self._cross * motion[1]
         return residual
 
     def _without_response(self, residual):
-        """Return the forces (3, k, .) that make residuals (3, k, .) if there is no response."""
+        """Return the forces (3, ..., k, .) that make residuals if there is no response."""
         force = np.empty_like(residual)
         np.multiply(self._normal, residual[0], out=force[0])
         first, second = residual[1:] - self._pull * force[0]

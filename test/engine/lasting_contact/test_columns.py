@@ -23,8 +23,8 @@ import numpy as np
 import pytest
 
 from rigid_sim_ros.engine.lasting_contact import Island
-from rigid_sim_ros.engine.lasting_contact.pile import pile_contacts
-from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES
+from rigid_sim_ros.engine.lasting_contact.pile import group_newton, pile_contacts
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import GroupNewton, MOST_BODIES
 from rigid_sim_ros.engine.shapes import Cube
 
 EDGE, SPEED, GAP = 0.2, 1.0, 1e-4
@@ -61,72 +61,98 @@ def test_a_column_is_not_solved_by_others():
                                atol=1e-9)
 
 
+class Tries:
+    """
+    Groups of contacts Newton's method is tried for one by one: it fails for those not allowed.
+
+    Whole steps of many groups together fail for these too, and do not count.
+    """
+
+    def __init__(self, monkeypatch, allowed=()):
+        self.groups = []
+        self._now, self._allowed = None, allowed
+        factor, steps, alone = (
+            GroupNewton._factor, group_newton.newton_steps, group_newton.newton_alone)
+
+        def noted(newton, groups, places):
+            self._now = groups
+            return factor(newton, groups, places)
+
+        def tried_together(*arguments):
+            force, used = steps(*arguments)
+            return force, np.where(np.isin(self._now, self._allowed), used, 0)
+
+        def tried_alone(*arguments):
+            self.groups.extend(self._now)
+            return alone(*arguments) if self._now[0] in self._allowed else (None, 20)
+
+        monkeypatch.setattr(GroupNewton, '_factor', noted)
+        monkeypatch.setattr(group_newton, 'newton_steps', tried_together)
+        monkeypatch.setattr(group_newton, 'newton_alone', tried_alone)
+
+
 def test_newtons_method_is_given_up_where_it_does_not_pay(monkeypatch):
     """If it solves none it is tried for eight of fourteen columns, and for each less and less."""
-    tried, solutions = [], []
+    tries, solutions = Tries(monkeypatch), []
     solved = pile_contacts.PileContacts.solved
 
-    def failing(_rows, slots, *_):
-        tried.append(slots.min())
-        return None, 20
-
     def counted(contacts, *arguments):
-        solutions.append(len(tried))
+        solutions.append(len(tries.groups))
         return solved(contacts, *arguments)
 
-    monkeypatch.setattr(pile_contacts, 'newton_forces', failing)
     monkeypatch.setattr(pile_contacts.PileContacts, 'solved', counted)
     run = columns(14, 10)
     run.run(3 / 240)
     assert solutions[1] == 8
     while len(solutions) < 20:
         run.step()
-    assert set(Counter(tried).values()) <= {3, 4}
+    assert set(Counter(tries.groups).values()) <= {3, 4}
 
 
 def test_a_pile_that_is_made_anew_knows_whom_newtons_method_fails(monkeypatch):
     """Three columns are not tried again at once when their island has been found anew."""
-    tried = []
-    monkeypatch.setattr(pile_contacts, 'newton_forces',
-                        lambda *arguments: (tried.append(arguments), (None, 20))[1])
+    tries = Tries(monkeypatch)
     run = columns(3, 10)
     run.step()
-    assert len(tried) == 3
+    assert len(tries.groups) == 3
     before = run.island
     run.island = Island(run.world, before.members, before.pairs.pairs_a, before.pairs.pairs_b,
                         [before])
     run.step()
-    assert len(tried) == 3
+    assert len(tries.groups) == 3
 
 
 @pytest.mark.parametrize('more', [0, 1])
 def test_newtons_method_leaves_large_groups_alone(monkeypatch, more):
     """They are for the gradient."""
-    tried = []
-    monkeypatch.setattr(pile_contacts, 'newton_forces',
-                        lambda *arguments: (tried.append(arguments), (None, 1))[1])
+    tries = Tries(monkeypatch)
     columns(1, MOST_BODIES + more).run(2 / 240)
-    assert bool(tried) == (more == 0)
+    assert bool(tries.groups) == (more == 0)
 
 
 def test_newtons_method_goes_on_for_whom_it_pays(monkeypatch):
     """Four columns that it fails on do not keep it from ten others, which stand: 3e-2 if so."""
-    newton_forces = pile_contacts.newton_forces
-
-    def partly_failing(rows, slots, *arguments):
-        return (None, 1) if slots.min() >= 100 else newton_forces(rows, slots, *arguments)
-
-    monkeypatch.setattr(pile_contacts, 'newton_forces', partly_failing)
+    tries = Tries(monkeypatch, allowed=range(10))
     run = columns(14, 10)
     run.run(8 / 240)
+    assert 13 in tries.groups
     moving = np.abs(run.state.linear_velocity).max(axis=0)
     assert moving[100:140].max() > 1e-2
     assert moving[:100].max() < 1e-3
 
 
+def test_columns_are_solved_together(monkeypatch):
+    """Not one by one: nearly all of them by whole steps."""
+    tries = Tries(monkeypatch, allowed=range(14))
+    run = columns(14, 10)
+    run.run(4 / 240)
+    assert np.abs(run.state.linear_velocity).max() < 1e-6
+    assert len(tries.groups) <= 2
+
+
 def test_the_gradient_takes_no_notice_of_other_columns(monkeypatch):
     """Without Newton's method: the others move alike if one column slides."""
-    monkeypatch.setattr(pile_contacts, 'newton_forces', lambda *arguments: (None, 1))
+    Tries(monkeypatch)
     alike, other = columns(14, 10), columns(14, 10)
     other.state.linear_velocity[0, :10] = 0.5
     for run in (alike, other):

@@ -18,9 +18,8 @@ import numpy as np
 
 from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.friction import mixed_friction, mixed_restitution, tangents
-from rigid_sim_ros.engine.graph import alike, group_numbers
-from rigid_sim_ros.engine.lasting_contact.pile.group_newton import MOST_BODIES, newton_forces
-from rigid_sim_ros.engine.lasting_contact.pile.patience import newton_pays
+from rigid_sim_ros.engine.graph import group_numbers
+from rigid_sim_ros.engine.lasting_contact.pile.group_newton import GroupNewton, MOST_BODIES
 from rigid_sim_ros.engine.lasting_contact.pile.pile_rows import DenseRows, PointRows
 from rigid_sim_ros.engine.solvers.accelerated import accelerated, Cones
 from rigid_sim_ros.engine.solvers.accelerated_groups import (
@@ -31,11 +30,14 @@ from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
 DENSE = 500
 """Contact points times bodies up to which a dense response is quicker than blocks."""
 
-APART = 500
+APART = 200
 """Contacts from which on the gradient takes each group by itself: fewer are quicker together."""
 
-FIRST_ITERATIONS, FIRST_OF_FEW = 40, 100
-"""Of the gradient, before Newton's method is tried; of few contacts they are cheap."""
+FIRST_ITERATIONS, FIRST_OF_FEW, FIRST_APART = 40, 100, 24
+"""
+Of the gradient, before Newton's method is tried; of few contacts they are cheap. Of groups by
+themselves that takes many together, and needs forces that are less close.
+"""
 
 PARTING = 1e6
 """Motion of contacts that cannot close in a step: they are not there."""
@@ -99,7 +101,7 @@ class PileContacts:
         self.body_groups[self._slots] = self.groups
         self.body_groups[members] = self.group_count
         self._apart = len(a) >= APART and self.group_count > 1
-        self._first = FIRST_OF_FEW if few else FIRST_ITERATIONS
+        self._first = FIRST_OF_FEW if few else FIRST_APART if self._apart else FIRST_ITERATIONS
         self._point_groups = self.groups
         self.rows = self._dense(rows, self._slots) if few else self._many(
             rows, self._slots, a * bodies.count + b)
@@ -161,19 +163,13 @@ class PileContacts:
         if not groups.any():
             return used, solved
         may_close = free[self._places] < PARTING
-        for group, places in alike(np.where(groups[self.groups] & may_close, self.groups, -1)):
-            if group < 0:
-                continue
-            if not newton_pays(np.count_nonzero(used), np.count_nonzero(solved)):
-                break
-            points = self._places[places]
-            found, used[group] = newton_forces(
-                self._scaled_rows[:, places], self._slots[:, places],
-                free.reshape(3, -1)[:, points], self._friction[points],
-                forces.reshape(3, -1)[:, points], tolerance[group])
-            if found is not None:
-                solved[group] = True
-                forces.reshape(3, -1)[:, points] = found.reshape(3, -1)
+        newton = GroupNewton(
+            self._scaled_rows, self._slots, np.where(groups[self.groups] & may_close,
+                                                     self.groups, -1),
+            self.body_groups, self._friction[self._places])
+        found = forces.reshape(3, -1)[:, self._places]
+        used, solved = newton.solve(free.reshape(3, -1)[:, self._places], found, tolerance)
+        forces.reshape(3, -1)[:, self._places] = found
         return used, solved
 
     def _dense(self, rows, slots):
