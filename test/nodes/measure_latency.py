@@ -19,9 +19,11 @@ How long a command takes to show: from its publication to the first pose that is
 
 Cubes drift without touching; so many times (300), at random moments, another process (this one)
 gives one of them another velocity and waits for the pose that shows it. States are published once
-a period, so half of one is the least there can be on average.
+a period, so half of one is the least there can be on average. The other figures are those of a
+process that has nothing to compute: it changes a number in as many bytes.
 """
 
+import itertools
 import os
 from pathlib import Path
 import sys
@@ -29,10 +31,14 @@ import tempfile
 import time
 
 from geometry_msgs.msg import TwistStamped
-from measure_publishing import CASES, Reader, SCENE
+from measure_publishing import alone, CASES, DEPTH, POSES, Reader, SCENE, TYPE
 from node_harness import NodeProcess, PATIENCE
 import numpy as np
-from rigid_sim_ros.messages import decode_pose_array
+import rclpy
+from rclpy.node import Node
+from rigid_sim_ros.messages import decode_pose_array, PoseArrayEncoder
+from rigid_sim_ros.nodes.executors import AUTO, make_executor
+from rigid_sim_ros.nodes.interfaces import interface
 from rigid_sim_ros.topics import resolve
 
 ALLOWED = 2e-3
@@ -99,36 +105,70 @@ class Commander(Reader):
         self._latest = arrival, poses.time_ns / 1e9, float(poses.position[0, 0])
 
 
-def measure(counts, rate, repetitions):
-    """Return the latencies [s] of so many commands."""
+def latencies(domain_id, repetitions):
+    """Return those [s] of so many commands to what publishes poses in a domain."""
     random = np.random.default_rng(1)
+    commander = Commander(domain_id)
+    try:
+        commander.connect()
+        found = []
+        for number in range(repetitions):
+            commander.spin(random.uniform(*PAUSES))
+            found.append(commander.latency('cube_0', SPEEDS[number % 2]))
+        return np.array(found)
+    finally:
+        commander.close()
+
+
+def measure_node(counts, rate, repetitions):
+    """Return the latencies [s] of the node."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / 'drift.yaml'
         path.write_text(SCENE.format(count=list(counts)))
         with NodeProcess(folder, scene=path, publish_rate=rate) as process:
-            commander = Commander(process.domain_id)
-            try:
-                commander.connect()
-                latencies = []
-                for number in range(repetitions):
-                    commander.spin(random.uniform(*PAUSES))
-                    latencies.append(commander.latency('cube_0', SPEEDS[number % 2]))
-                return np.array(latencies)
-            finally:
-                commander.close()
+            return latencies(process.domain_id, repetitions)
+
+
+def answer_alone(count, rate):
+    """Publish as many bytes as poses of so many bodies take, changed by each command, for ever."""
+    rclpy.init()
+    node = Node('rigid_sim')
+    executor, _ = make_executor(AUTO)
+    executor.add_node(node)
+    publisher = node.create_publisher(interface(TYPE), POSES, DEPTH)
+    encoder, position = PoseArrayEncoder('world', count), np.zeros((count, 3))
+
+    def change(_):
+        position[0, 0] += 1.0
+
+    node.create_subscription(TwistStamped, resolve('~/cmd_vel'), change, 10)
+    start = time.monotonic()
+    for number in itertools.count(1):
+        data = encoder.encode(0, position, np.zeros((count, 4)))
+        publisher.publish(data)
+        while (left := start + number / rate - time.monotonic()) > 0.0:
+            executor.spin_once(timeout_sec=left)
 
 
 def main(repetitions):
     """Print a table."""
-    print('| cubes | states [Hz] | median [ms] | 99 % [ms] | within a period and 2 ms |')
-    print('| --- | --- | --- | --- | --- |')
+    print('| cubes | states [Hz] | median, 99 % [ms] | within a period and 2 ms | '
+          'bytes alone: median, 99 % [ms] | within |')
+    print('| --- | --- | --- | --- | --- | --- |')
     for counts, rate in CASES:
-        latencies = measure(counts, rate, repetitions)
-        median, most = np.percentile(latencies, (50, 99)) * 1e3
-        print(f'| {np.prod(counts)} | {rate:g} | {median:.2f} | {most:.2f} | '
-              f'{np.mean(latencies <= 1 / rate + ALLOWED):.1%} |', flush=True)
+        print(f'| {np.prod(counts)} | {rate:g} |', end='')
+        with alone(__file__, counts, rate) as (_, domain_id):
+            least = latencies(domain_id, repetitions)
+        for found in measure_node(counts, rate, repetitions), least:
+            median, most = np.percentile(found, (50, 99)) * 1e3
+            print(f' {median:.2f}, {most:.2f} | {np.mean(found <= 1 / rate + ALLOWED):.1%} |',
+                  end='')
+        print(flush=True)
 
 
 if __name__ == '__main__':
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    main(int(sys.argv[1]) if sys.argv[1:] else 300)
+    if sys.argv[1:2] == ['alone']:
+        answer_alone(int(sys.argv[2]), float(sys.argv[3]))
+    else:
+        os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+        main(int(sys.argv[1]) if sys.argv[1:] else 300)

@@ -25,6 +25,7 @@ comes within a millisecond of when it should, counted from the tenth of the stat
 earliest.
 """
 
+from contextlib import contextmanager
 import os
 from pathlib import Path
 import subprocess
@@ -144,16 +145,23 @@ def measure_node(count, rate, duration):
             return measure(process.process.pid, process.domain_id, duration)
 
 
-def measure_alone(count, rate, duration):
+@contextmanager
+def alone(script, counts, rate):
+    """Run a script's part for bytes of poses of so many cubes alone; give its domain."""
     domain_id = os.getpid() % 100 + 1
     process = subprocess.Popen(
-        [sys.executable, __file__, 'alone', str(np.prod(count)), str(rate)],
+        [sys.executable, script, 'alone', str(np.prod(counts)), str(rate)],
         env={**os.environ, 'ROS_DOMAIN_ID': str(domain_id), 'PYTHONPATH': str(ROOT)})
     try:
-        return measure(process.pid, domain_id, duration)[0]
+        yield process.pid, domain_id
     finally:
         process.kill()
         process.wait()
+
+
+def measure_alone(counts, rate, duration):
+    with alone(__file__, counts, rate) as (pid, domain_id):
+        return measure(pid, domain_id, duration)[0]
 
 
 def main(duration):
