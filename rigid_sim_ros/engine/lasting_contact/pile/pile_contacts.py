@@ -30,7 +30,7 @@ from rigid_sim_ros.engine.solvers.rows import mass_scale, scaled_rows
 DENSE = 500
 """Contact points times bodies up to which a dense response is quicker than blocks."""
 
-APART = 200
+APART = 500
 """Contacts from which on the gradient takes each group by itself: fewer are quicker together."""
 
 FIRST_ITERATIONS, FIRST_OF_FEW, FIRST_APART = 40, 100, 24
