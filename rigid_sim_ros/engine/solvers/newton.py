@@ -114,7 +114,11 @@ def solve_newton(problem, guess, accuracy):
 
 
 def rounding_of(count, largest):
-    """Return the rounding of the motion of so many contacts per force, by the largest response."""
+    """
+    Return the rounding of the motion of so many contacts per force, below which no residual gets.
+
+    `largest` is the largest of the response.
+    """
     return 5e-16 * count ** 1.5 * largest
 
 

@@ -32,13 +32,13 @@ a twentieth of the time in which that does, and four of five groups of up to ten
 more than 30 cubes it does one group of five, in the time of the gradient.
 """
 
-SAFETY = 0.1
+_SAFETY = 0.1
 """Of the tolerance: what Newton's method, which has another norm, is asked for."""
 
-STEPS = 5
+_STEPS = 5
 """Of groups together, which are all whole: who needs more needs to have some of them halved."""
 
-ENTRIES = 100_000
+_ENTRIES = 100_000
 """Of the Jacobians of groups that are taken together: many more leave the cache (measured)."""
 
 
@@ -78,7 +78,7 @@ class GroupNewton:
         forces, less what is asked for, is `free` (3, k), and tolerances (g,) are of motion.
         """
         used = np.zeros(len(tolerance), dtype=int)
-        tolerance = SAFETY * tolerance
+        tolerance = _SAFETY * tolerance
         for groups, places in self._shapes():
             found, used[groups] = newton_steps(
                 self._factor(groups, places), free[:, places], self._friction[places],
@@ -106,7 +106,7 @@ class GroupNewton:
             shapes.setdefault((len(places), self._sizes[group].item()), []).append((group, places))
         for (contacts, bodies), members in shapes.items():
             groups, places = map(np.array, zip(*members))
-            parts = ceil(18 * contacts * bodies * len(groups) / ENTRIES)
+            parts = ceil(18 * contacts * bodies * len(groups) / _ENTRIES)
             yield from zip(np.array_split(groups, parts), np.array_split(places, parts))
 
     def _factor(self, groups, places):
@@ -125,7 +125,7 @@ def newton_steps(factor, free, friction, force, tolerance):
     They are of m contacts each; arguments are those of `newton_together`.
     """
     used, left = np.zeros(len(tolerance), dtype=int), np.arange(len(tolerance))
-    for step in range(1, 1 + STEPS):
+    for step in range(1, 1 + _STEPS):
         if len(left) <= 1:
             # one is quicker alone, mostly in plain floats
             break
