@@ -14,7 +14,7 @@
 
 """The motion of an island's bodies: what a step changes, and how they move between contacts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -144,6 +144,22 @@ class FreeMotion:
         """Return the moments (3, 3, m) [kg m^2] of bodies (m,) about their centres, world axes."""
         turn = rotation.matrix(motion.orientation[:, which])
         return (turn[:, None] * turn * self._inertia[:, which]).sum(axis=2)
+
+    def displaced(self, motion, linear, angular):
+        """
+        Return a motion with its first m bodies moved by (3, m) and turned by (3, m).
+
+        With unequal moments rates turn along, as about other axes of a body they would be of
+        another energy.
+        """
+        count = linear.shape[1]
+        moved = motion.moved(np.arange(count), linear, angular)
+        if self._plain:
+            return moved
+        rates = motion.angular.copy()
+        rates[:, :count] = rotation.transform(
+            rotation.matrix(rotation.from_rotation_vector(angular)), rates[:, :count])
+        return replace(moved, angular=rates)
 
     def kicked(self, motion, time):
         """Return the motion after forces have acted for `time` [s] and nothing has moved."""

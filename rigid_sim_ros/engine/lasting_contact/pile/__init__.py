@@ -225,7 +225,7 @@ class Pile:
         if raised > lost and contacts.gap.min() > -DEEP * scales.length:
             part = lost / raised
         contacts.gap = contacts.gap + part * contacts.motion(contacts.rows.response(force))[0]
-        return motion.moved(np.arange(count), part * linear, part * angular)
+        return free.displaced(motion, part * linear, part * angular)
 
     def _step(self, motion, free, scales, start, duration):
         """Return (motion, closed contacts) after a step of `duration` [s]."""

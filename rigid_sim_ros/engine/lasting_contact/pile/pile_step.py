@@ -185,9 +185,17 @@ class PileStep:
         impulse, closed = contacts.forces(self.forces), self.closed
         rebound = np.where(self.hits & closed,
                            contacts.restitution(-self.speed) * self.speed, 0.0)
+        self.lost = min(self.lost, self._lost_on_the_way())
         if rebound.any():
             impulse = impulse + self._rebound(closed, rebound)
         return self.hits & closed & ~self._pressed, impulse
+
+    def _lost_on_the_way(self):
+        """Return the energy [J] lost in all, also by how bodies of unequal moments turn."""
+        free, start, end = self._free, self._start, self.end
+        gained = (free.kinetic_energy(end) - free.kinetic_energy(start)
+                  - free.work(start, end, self._duration))
+        return max(0.0, -float(gained.sum()))
 
     def _rebound(self, closed, rebound):
         """
@@ -204,7 +212,9 @@ class PileStep:
         velocity = self.contacts.scaled(self.end)
         forces, change = self._solved(velocity, asked, np.zeros(3 * self.contacts.rows.count))
         part = rebound_part(velocity, change, self.lost)
-        self.lost -= part * float(change @ velocity + 0.5 * part * (change @ change))
+        # what rounding would take below zero would be shared out where overlaps are pushed out
+        self.lost = max(0.0, self.lost - part * float(
+            change @ velocity + 0.5 * part * (change @ change)))
         self.end = self.end.struck(np.arange(self._island.member_count),
                                    *self.contacts.velocities(part * change))
         impulse = part * self.contacts.forces(forces)
