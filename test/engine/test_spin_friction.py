@@ -71,6 +71,22 @@ def test_rolling_balls_come_to_rest(count):
     np.testing.assert_allclose(way, speed ** 2 / (2 * slowing), rtol=1e-9 if count == 1 else 1e-4)
 
 
+@pytest.mark.parametrize('spin', [1.7e-18, -1e-30, 5e-324])
+def test_a_spin_of_next_to_nothing_ends_at_once(spin):
+    """In no time. The other, by width times weight over 2/5 m r^2; it slides on as before."""
+    width, speed, rate = 0.002, 0.75, 0.5
+    simulation = simulated(
+        ball(velocity=(speed, 0.0, 0.0), angular_velocity=(0.0, rate, spin)),
+        friction=0.0, rolling_friction=width, pivoting_friction=width)
+    slowing = width * GRAVITY / (0.4 * RADIUS ** 2)
+    simulation.advance(0.5 * rate / slowing)
+    np.testing.assert_allclose(simulation.angular_velocity[0], (0.0, 0.5 * rate, 0.0), rtol=1e-9)
+    simulation.advance(1.0)
+    assert (simulation.angular_velocity == 0.0).all()
+    np.testing.assert_allclose(
+        simulation.position[0], (speed * simulation.time, 0.0, RADIUS), rtol=1e-12)
+
+
 def test_many_balls_on_one_plate_roll_as_one_does():
     """A pile, of first order: that of nine balls on a plate too heavy for them to move."""
     width, speed, early = 0.01, 0.2, 0.1

@@ -105,6 +105,7 @@ class Step:
 
 def _interpolated(size, rows, time, part=ALL):
     """Return the state a time after the start of a step of this size with these coefficients."""
-    s = time / size
+    # what ends at once takes a step of no size
+    s = time / size if size else 0.0
     t = 1.0 - s
     return [r1 + s * (r2 + t * (r3 + s * (r4 + t * r5))) for r1, r2, r3, r4, r5 in rows[part]]
