@@ -30,9 +30,10 @@ def body(name, shape, position, mass=1.0, **values):
                 **values)
 
 
-def scene(bodies, restitution=0.0, friction=0.5, gravity=GRAVITY, planes=True, law='poisson'):
+def scene(bodies, restitution=0.0, friction=0.5, gravity=GRAVITY, planes=True, law='poisson',
+          **material):
     """Return these bodies above the plane z = 0, all of one material."""
-    material = Material(restitution, friction)
+    material = Material(restitution, friction, **material)
     return Scene(tuple(replace(each, material=material) for each in bodies),
                  (Plane('ground', material=material),) if planes else (),
                  (0.0, 0.0, -float(gravity)), law)

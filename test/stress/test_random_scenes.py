@@ -27,6 +27,9 @@ from watching import cpu_limit, Watch
 ENERGY = 1e-5
 """What energy may rise by in parts of its scale: steps of few bodies keep it to second order."""
 
+ENERGY_OF_STACKS = 1e-4
+"""The same of stacks, where it is raised by what a pile has let sink."""
+
 MOMENTUM = 1e-12
 """What momentum may change by where nothing external acts, in parts of what flies about."""
 
@@ -74,6 +77,30 @@ def scenes(draw):
     return made, draw(st.sampled_from((1 / 240, 1 / 60, 1 / 1000)))
 
 
+@st.composite
+def stacks(draw):
+    """Return (scene, step [s]) of stacks side by side that fall onto each other, askew."""
+    random = np.random.default_rng(draw(seeds))
+    shapes = draw(st.sampled_from(((Cube(0.2),), (Cube(0.2), Box((0.2, 0.14, 0.18)),
+                                                  Sphere(0.1)))))
+    ratio = draw(st.sampled_from((1.0, 10.0, 100.0)))
+    result = []
+    for place, height in enumerate(draw(st.lists(st.integers(1, 5), min_size=3, max_size=8))):
+        for level in range(height):
+            x, y, z = random.uniform((-0.03, -0.03, 0.0), (0.03, 0.03, 0.02))
+            result.append(body(
+                f'body_{place}_{level}', shapes[random.integers(len(shapes))],
+                (0.32 * (place % 5) + x, 0.32 * (place // 5) + y, 0.11 + 0.235 * level + z),
+                float(ratio ** random.uniform(-0.5, 0.5))))
+    made = scene(result, restitution=draw(st.sampled_from((0.0, 0.5, 0.9, 1.0))),
+                 friction=draw(st.sampled_from((0.5, 0.0, 0.2, 1.0))),
+                 law=draw(st.sampled_from(('poisson', 'newton', 'stronge'))),
+                 **draw(st.sampled_from((
+                     {}, {'rolling_friction': 0.002, 'pivoting_friction': 0.002},
+                     {'restitution_speed': 1.0}))))
+    return made, draw(st.sampled_from((1 / 240, 1 / 100, 1 / 60)))
+
+
 def check(case):
     """Simulate for half a second and look all the time."""
     made, step = case
@@ -99,3 +126,16 @@ def test_a_few_random_scenes(case):
 def test_many_random_scenes(case):
     """The same of others each time; the failing scene is printed."""
     check(case)
+
+
+@pytest.mark.stress
+@settings(max_examples=20, deadline=None, database=None, phases=PHASES)
+@given(stacks())
+def test_many_stacks_at_random(case):
+    """Finite, hardly any overlap; what has sunk in a pile may be lifted out when that is over."""
+    made, step = case
+    watch = Watch(made, step)
+    with cpu_limit(180):
+        watch.run(1.5)
+    assert watch.penetration < PENETRATION
+    assert watch.energy_rise < ENERGY_OF_STACKS
