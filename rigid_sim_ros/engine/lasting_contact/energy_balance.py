@@ -74,6 +74,9 @@ class Ending(NamedTuple):
     near: Near
     """The contacts there."""
 
+    shift: np.ndarray
+    """(2, 3, n): how far [m], [rad] bodies have been pushed there, if energy allows."""
+
     @property
     def halves(self):
         """Return [(contacts near, impulses, velocities across)] of the halves with impulses."""
@@ -83,9 +86,11 @@ class Ending(NamedTuple):
         return halves[self.trial.impulse is None:]
 
 
-def ending_of(trial, before, near, which):
+def ending_of(trial, before, near, which, shift=None):
     """Return the `Ending` of a step, with the impulses of its second half at contacts (m,) int."""
-    return Ending(trial, before, *second_half(before, near, which, trial.step), near)
+    if shift is None:
+        shift = np.zeros((2, *before.linear.shape))
+    return Ending(trial, before, *second_half(before, near, which, trial.step), near, shift)
 
 
 class Group(NamedTuple):
@@ -126,17 +131,20 @@ def balanced(ending, slide_speed, carry=True):
         return ending.after, ending.near
     still = _STILL * slide_speed
     sticking = [group.rough and group.slip <= still for group in groups]
-    motion, near = ending.after, ending.near
+    motion, near, shift = ending.after, ending.near, ending.shift
     if carry and any(sticking):
-        motion, near = _carried(ending, [
+        motion, near, carried = _carried(ending, [
             body for group, sticks in zip(groups, sticking) if sticks for body in group.members])
+        shift = shift + carried
     free, trial = ending.trial.free, ending.trial
     energy = free.kinetic_energy(motion)
     gain = energy - free.kinetic_energy(trial.start) - free.work(trial.start, motion, trial.step)
     for group, sticks in zip(groups, sticking):
         rise, there = (float(values[group.members].sum()) for values in (gain, energy))
         if rise > _ROUNDING * there or sticks and _ROUNDING * there < -rise < _MOST * there:
-            motion = slowed(free, motion, group, rise)
+            motion, unpaid = slowed(free, motion, group, rise)
+            if unpaid > _ROUNDING * rise:
+                motion, near = _taken_back(free, motion, near, group.members, shift, unpaid)
     return motion, near
 
 
@@ -175,7 +183,11 @@ def _slip(touches):
 
 
 def _carried(ending, members):
-    """Return (motion, contacts near it) at the end, as forces that change carry bodies (m,)."""
+    """
+    Return (motion, contacts near it) at the end, as forces that change carry bodies (m,).
+
+    And by how much, (2, 3, n) [m], [rad].
+    """
     trial, before, after = ending.trial, ending.before, ending.after
     free, half = trial.free, 0.5 * trial.step
     # what forces do in half a step, late less early; held ones do the same but for turning
@@ -183,15 +195,37 @@ def _carried(ending, members):
     late_angular = (after.angular - before.angular + free.turned_by_torques(after, half)
                     - (trial.struck.angular - trial.kicked.angular)
                     - free.turned_by_torques(trial.start, half))
-    linear, angular = np.zeros((2, *after.linear.shape))
-    linear[:, members] = (trial.step / 3.0) * late_linear[:, members]
-    angular[:, members] = (trial.step / 3.0) * late_angular[:, members]
-    motion = after.moved(np.arange(linear.shape[1]), linear, angular)
-    return motion, ending.near.shifted(motion, linear, angular)
+    shift = np.zeros((2, *after.linear.shape))
+    shift[0, :, members] = (trial.step / 3.0) * late_linear[:, members].T
+    shift[1, :, members] = (trial.step / 3.0) * late_angular[:, members].T
+    motion = after.moved(np.arange(shift.shape[2]), *shift)
+    return motion, ending.near.shifted(motion, *shift), shift
+
+
+def _taken_back(free, motion, near, members, shift, unpaid):
+    """
+    Return (motion, contacts near it) with so much of a shift undone that an energy [J] is paid.
+
+    Of the bodies (m,) int only, and no more than all of what lifts them against held forces.
+    Overlaps that a pile has left, of bodies that come to rest, may have nothing else to pay for
+    being pushed out: they stay. Nor may what is carried on gain, where forces end on the way.
+    """
+    own = np.zeros_like(shift)
+    own[:, :, members] = shift[:, :, members]
+    lifted = -float((free.mass * rotation.dot(free.acceleration, own[0])).sum())
+    if lifted <= 0.0:
+        return motion, near
+    own *= -min(1.0, unpaid / lifted)
+    motion = motion.moved(np.arange(own.shape[2]), *own)
+    return motion, near.shifted(motion, *own)
 
 
 def slowed(free, motion, group, rise):
-    """Return the motion with a group's velocities slowed down by an energy [J], or less."""
+    """
+    Return the motion with a group's velocities slowed down by an energy [J], or less.
+
+    And what is left of that [J].
+    """
     members = group.members
     kept = np.zeros((2, 3, len(members))) if group.rough else _kept(free, motion, group)
     linear, angular = np.zeros((2, *motion.linear.shape))
@@ -201,7 +235,7 @@ def slowed(free, motion, group, rise):
         Motion(motion.position, motion.orientation, linear, angular)).sum())
     less = 1.0 - (sqrt(1.0 - rise / energy) if rise < energy else 0.0)
     return Motion(motion.position, motion.orientation, motion.linear - less * linear,
-                  motion.angular - less * angular)
+                  motion.angular - less * angular), max(0.0, rise - energy)
 
 
 def _kept(free, motion, group):

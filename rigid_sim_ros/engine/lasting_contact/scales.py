@@ -49,6 +49,12 @@ IMPACT_GAP = 1e-6
 OVERLAP = 1e-9
 """Of the length scale: overlap that is left alone; more is an impact, or is pushed out."""
 
+DEEP = 1e-3
+"""
+Of the length scale: overlap of few bodies that is pushed out whatever energy that takes; their own
+steps and those of piles leave less, so somebody else has made it.
+"""
+
 REST = 3e-4
 """Of the speed scale: what is slower and in equilibrium is at rest."""
 

@@ -136,15 +136,15 @@ def push_out(motion, near):
     """
     Return the motion with bodies moved so that no contact overlaps, without friction.
 
-    And how: by (3, n) [m] and turned by (3, n) [rad].
+    And the shift (2, 3, n): how far they are moved [m] and turned [rad].
     """
     rows, count = near.rows, near.count
-    linear, angular = np.zeros((2, *motion.linear.shape))
+    shift = np.zeros((2, *motion.linear.shape))
     zeros = np.zeros(count)
     free = np.concatenate((near.contacts.separation, zeros, zeros))
     problem = ContactProblem(rows.response(), free, zeros, zeros, np.zeros((2, count)))
-    linear[:, rows.touched], angular[:, rows.touched] = rows.change(solve(problem).force)
-    return motion.moved(np.arange(linear.shape[1]), linear, angular), linear, angular
+    shift[:, :, rows.touched] = rows.change(solve(problem).force)
+    return motion.moved(np.arange(shift.shape[2]), *shift), shift
 
 
 def _turning(near, motion, step):

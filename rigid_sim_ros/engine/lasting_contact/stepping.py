@@ -93,27 +93,32 @@ def _advance(island, free, scales, limits, motion, time, step):
         if not left or _turns(island, motion, left) > _FASTER:
             trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
-    end, end_near = _separated(end, end_near, scales, margin)
+    end, end_near, shift = _separated(end, end_near, scales, margin)
     closed = end_near.closed(limits.touch_gap)
     if closed.size:
         # what arrives fast just now is an impact, the first thing in the next step
         closed = closed[end_near.approach(end)[closed] <= limits.impact_speed]
-    ending = ending_of(trial, end, end_near, closed)
+    ending = ending_of(trial, end, end_near, closed, shift)
     motion, near = balanced(ending, limits.slide_speed)
     island.remember(near, margin)
     return motion, near, left
 
 
 def _separated(motion, near, scales, margin):
-    """Return (motion, contacts near it) with overlaps pushed out."""
+    """
+    Return (motion, contacts near it, the shift) with overlaps pushed out.
+
+    The shift (2, 3, n) is that which has to be paid for, None if there is none.
+    """
     deepest = -float(near.contacts.separation.min(initial=0.0))
     if deepest <= units.OVERLAP * scales.length:
-        return motion, near
-    motion, linear, angular = push_out(motion, near)
+        return motion, near, None
+    motion, shift = push_out(motion, near)
     # contacts of bodies that hardly move need not be found again
     if deepest <= units.IMPACT_GAP * scales.length:
-        return motion, near.shifted(motion, linear, angular)
-    return motion, near.island.near(motion, margin)
+        return motion, near.shifted(motion, *shift), shift
+    owed = shift if deepest <= units.DEEP * scales.length else None
+    return motion, near.island.near(motion, margin), owed
 
 
 def parts_of(island, free, motion, duration):

@@ -30,6 +30,7 @@ from rigid_sim_ros.engine.events import IMPACT
 from rigid_sim_ros.engine.friction import mixed_friction, surfaces_of
 from rigid_sim_ros.engine.lasting_contact import scales as units
 from rigid_sim_ros.engine.lasting_contact.automaton.automaton import Automaton
+from rigid_sim_ros.engine.lasting_contact.automaton.contact_state import TOUCH
 from rigid_sim_ros.engine.lasting_contact.automaton.plane_body import dot, PlaneBody
 from rigid_sim_ros.engine.lasting_contact.scales import Scales
 
@@ -55,6 +56,8 @@ class OnPlane:
         self._plane = int(island.pairs.pairs_a[pair] + island.pairs.pairs_b[pair])
         normal = bodies.plane_normal[:, self._plane]
         self._offset = float(bodies.plane_offset[self._plane])
+        self._sunk = 0.0
+        """How deep [m] it has begun in the plane, and stays."""
         self._upright = bool(normal[2] == 1.0)
         # the shortest turn of the normal to z; half a turn about x where it points down
         turn = np.array((normal[1], -normal[0], 0.0, 1.0 + normal[2]))
@@ -109,10 +112,21 @@ class OnPlane:
         return self._contacts(automaton), resting
 
     def _begun(self, state):
-        """Return an `Automaton` that begins in a `State`."""
+        """
+        Return an `Automaton` that begins in a `State`.
+
+        If that has sunk into the plane by as little as steps of piles leave, it goes on at that
+        level: nobody would pay for lifting it.
+        """
         body = self._body(state)
         scales = Scales(self._radius, dot(body.acceleration, body.acceleration) ** 0.5)
-        return Automaton(body, self._numbers(state), scales, units.STICK * scales.speed,
+        self._sunk = 0.0
+        numbers = self._numbers(state)
+        sunk = -min(body.gaps(numbers))
+        if TOUCH < sunk / scales.length <= units.DEEP:
+            self._sunk = sunk
+            numbers[2] += sunk
+        return Automaton(body, numbers, scales, units.STICK * scales.speed,
                          self._surfaces, self._island.world.impact_law)
 
     def _is_left(self, state):
@@ -134,6 +148,11 @@ class OnPlane:
                          self._to_plane(acceleration), self._to_plane(torque), self._friction,
                          *self._resistance)
 
+    @property
+    def _level(self):
+        """Return how high [m] the plane is as far as the body is concerned."""
+        return self._offset - self._sunk
+
     def _to_plane(self, vector):
         """Return a world vector (3,) in the frame of the plane, as floats."""
         return vector if self._upright else rotation.rotate(self._turn, vector).tolist()
@@ -149,7 +168,7 @@ class OnPlane:
         if not self._upright:
             orientation = rotation.multiply(self._turn, orientation)
         x, y, z = self._to_plane(state.position[:, member].tolist())
-        return [x, y, z - self._offset, *orientation.tolist(),
+        return [x, y, z - self._level, *orientation.tolist(),
                 *self._to_plane(state.linear_velocity[:, member].tolist()),
                 *self._to_plane(state.angular_velocity[:, member].tolist())]
 
@@ -160,7 +179,7 @@ class OnPlane:
         if not self._upright:
             orientation = rotation.multiply(self._back, orientation)
         member = self._member
-        state.change('position', member, self._to_world((x, y, z + self._offset)))
+        state.change('position', member, self._to_world((x, y, z + self._level)))
         state.change('orientation', member, orientation)
         state.change('linear_velocity', member, self._to_world(numbers[7:10]))
         state.change('angular_velocity', member, self._to_world(numbers[10:]))
@@ -179,7 +198,7 @@ class OnPlane:
         work.impacts += len({hit.time for hit in hits})
         for hit in hits:
             x, y, z = hit.point
-            point = self._to_world((x, y, z + self._offset))
+            point = self._to_world((x, y, z + self._level))
             island.world.events.append(
                 self._began + hit.time, a, b, IMPACT, point, normal,
                 sign * np.array(self._to_world(hit.impulse)), hit.speed)
@@ -190,14 +209,14 @@ class OnPlane:
         if not closed:
             return Contacts.none()
         x, y, z = numbers[:3]
-        points = [self._to_world((x + a, y + b, z + c + self._offset))
+        points = [self._to_world((x + a, y + b, z + c + self._level))
                   for a, b, c in body.arms(body.turn(numbers), closed)]
         count = len(closed)
         if count not in self._constants:
             self._constants[count] = self._constants_of(count)
         body_a, body_b, normal, feature, zeros = self._constants[count]
-        return Contacts(body_a, body_b, np.array(points).T, normal, zeros[0], feature, zeros,
-                        zeros)
+        return Contacts(body_a, body_b, np.array(points).T, normal, zeros[0] - self._sunk,
+                        feature, zeros, zeros)
 
     def _constants_of(self, count):
         """Return the bodies, normals and features of so many contacts, and their edges: none."""
