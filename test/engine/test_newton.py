@@ -161,3 +161,11 @@ def test_one_contact_that_slides_along_a_known_direction():
     assert slide_one(response, 0.1, 0.4, (0.6, 0.8)) == (0.0, 0.0, 0.0)
     # friction 10 along +n1 presses the contact together by more than the normal force parts it
     assert slide_one(response, -1.0, 10.0, (1.0, 0.0)) is None
+
+
+def test_what_sticks_without_friction_needs_no_division():
+    """A contact pressed hard that has no reason to slide: no overflow, which users would see."""
+    equations = ManyEquations(np.ones((2, 1)), np.array([0.5]), np.zeros(1), np.zeros((2, 1)))
+    with np.errstate(all='raise'):
+        derivatives = equations.derivatives(np.array([10.0, 0.0, 0.0]), np.zeros(3))
+    assert all(np.isfinite(each).all() for each in derivatives)

@@ -184,7 +184,7 @@ class ManyEquations(FewEquations):
         length = np.sqrt(target[0] * target[0] + target[1] * target[1])
         slides = length > limit
         length = np.maximum(length, _TINY)
-        unit, turn = target / length, limit / length
+        unit, turn = target / length, np.where(slides, limit, 0.0) / length
         if self._slips is not None:
             slides = slides | self._slips
             unit = np.where(self._slips, -self._slip, unit)

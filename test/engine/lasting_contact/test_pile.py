@@ -370,3 +370,15 @@ def test_quiet_bodies_are_timed():
     younger.take_over(quiet)
     assert younger.durations(3.0, at(0.0), radius, 0.01).tolist() == [2.0, 2.0]
     assert younger.durations(4.0, at(0.5), radius, 0.01).tolist() == [3.0, 0.0]
+
+
+def test_a_slab_on_very_many_posts_stands():
+    """Eight cubes on a slab on 169 fixed ones: few bodies, and more contacts than fit at once."""
+    posts = [body(f'post_{x}_{y}', Cube(0.2), position=(0.3 * x, 0.3 * y, 0.1), fixed=True)
+             for x in range(13) for y in range(13)]
+    slab = body('slab', Box((3.9, 3.9, 0.2)), 50.0, position=(1.8, 1.8, 0.3))
+    cubes = [body(f'cube_{place}', Cube(0.2), position=(0.8 + 0.25 * place, 1.8, 0.5),
+                  velocity=(0.0, 0.5, 0.0)) for place in range(8)]
+    run = IslandRun([slab, *cubes, *posts], friction=0.5)
+    run.run(3 / 240)
+    assert run.state.position[2, 0] == pytest.approx(0.3, abs=1e-9)

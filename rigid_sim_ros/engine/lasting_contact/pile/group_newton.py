@@ -106,7 +106,7 @@ class GroupNewton:
             shapes.setdefault((len(places), self._sizes[group].item()), []).append((group, places))
         for (contacts, bodies), members in shapes.items():
             groups, places = map(np.array, zip(*members))
-            parts = ceil(18 * contacts * bodies * len(groups) / _ENTRIES)
+            parts = min(len(groups), ceil(18 * contacts * bodies * len(groups) / _ENTRIES))
             yield from zip(np.array_split(groups, parts), np.array_split(places, parts))
 
     def _factor(self, groups, places):

@@ -214,13 +214,16 @@ class PileContacts:
 
     def _bound(self, vector):
         """Return the scaled velocities of the fastest motions, and steps (g,) for the solver."""
-        rounds = _ROUNDS
-        if vector is None or not vector.any():
-            vector = np.random.default_rng(0).normal(size=6 * (self._members + 1))
-            rounds += 7
-        groups, count = np.zeros(len(vector), dtype=int), 1
+        rounds, length = _ROUNDS, 6 * (self._members + 1)
+        vector = np.zeros(length) if vector is None else vector
+        groups, count = np.zeros(length, dtype=int), 1
         if self._apart:
             groups, count = np.repeat(self.body_groups, 6), self.group_count + 1
+        still = np.bincount(groups, vector * vector, count) == 0.0
+        if still[:self.group_count].any():
+            # of members that touched nothing before, say: from zero it stays zero
+            vector = np.where(still[groups], np.random.default_rng(0).normal(size=length), vector)
+            rounds += 7
         largest, vector = largest_eigenvalues(
             lambda velocity: self.rows.momentum(self.rows.motion(velocity)), vector, groups,
             count, rounds)
