@@ -135,6 +135,8 @@ class Islands:
     def displace(self):
         """Note that bodies have been put elsewhere: pairs are to be looked for again."""
         self._spare = -inf
+        for island in self._islands:
+            island.displace()
 
     def reached(self, start, end, state, deflected):
         """

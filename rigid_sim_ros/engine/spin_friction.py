@@ -89,7 +89,24 @@ class Resistance:
         return reaction, mobility.sum(axis=0) + point_by_torque.transpose(0, 2, 1) @ reaction
 
     def applied(self, linear, angular):
-        """Return velocities (3, n) of all columns after the torques have acted on those given."""
+        """
+        Return velocities (3, n) of all columns after the torques have acted on those given.
+
+        With the forces that keep each contact as it is by itself.
+        """
+        return self._found(linear, angular)[:2]
+
+    def turned(self, linear, angular):
+        """Return the changes (3, n) [rad/s] of spins by the same torques without those forces."""
+        _, _, torque = self._found(linear, angular)
+        change = np.zeros_like(angular)
+        for sign, bodies in zip((-1.0, 1.0), self._both):
+            np.add.at(change.T, bodies, sign * np.einsum(
+                'kij,kj->ki', self._mobility[bodies], torque))
+        return change
+
+    def _found(self, linear, angular):
+        """Return (velocities (3, n), (3, n) after the torques, these (k, 3) [N m s])."""
         first, second = self._across.transpose(1, 0, 2)
         normal, response = self._normal.T, self._response
         g_n = np.maximum(_form(normal, response, normal), 1e-300)
@@ -110,7 +127,7 @@ class Resistance:
             linear, angular = self._changed(linear, angular, change)
             if np.abs(change * g_t[:, None]).max() <= _ENOUGH * np.abs(spin).max():
                 break
-        return linear, angular
+        return linear, angular, torque
 
     def _changed(self, linear, angular, torque):
         """Return the velocities after torques (k, 3) and the forces that go with them."""

@@ -31,13 +31,13 @@ def ball(name='ball', x=0.0, z=RADIUS, **values):
     return Body(name, shape, MASS, shape.inertia(MASS), position=(x, 0.0, z), **values)
 
 
-def simulated(*bodies, slope=0.0, **material):
+def simulated(*bodies, slope=0.0, max_step=STEP, **material):
     """Return a simulation on a plane that falls towards x, of one material."""
     surface = Material(**{'restitution': 0.0, 'friction': FRICTION, **material})
     bodies = [Body(**{**vars(body), 'material': surface}) for body in bodies]
     gravity = (GRAVITY * np.sin(slope), 0.0, -GRAVITY * np.cos(slope))
     return Simulation(Scene(tuple(bodies), (Plane('ground', material=surface),), gravity=gravity),
-                      max_step=STEP)
+                      max_step=max_step)
 
 
 def run(simulation, end):
@@ -102,6 +102,19 @@ def test_many_balls_on_one_plate_roll_as_one_does():
     assert simulation.asleep.all()
     np.testing.assert_allclose(simulation.position[1:, 0] - 0.5 * np.arange(9),
                                speed ** 2 / (2 * slowing), rtol=0.03)
+
+
+@pytest.mark.parametrize('max_step', [1 / 240, 1 / 960])
+def test_a_crowd_of_balls_rolls_as_one_does(max_step):
+    """One pile, as there are many: each by the closed form, however long contacts are kept."""
+    width, speed = 0.01, 0.3
+    balls = [ball(f'ball{row}', x=0.5 * row, **rolling(speed)) for row in range(30)]
+    simulation = simulated(*balls, rolling_friction=width, max_step=max_step)
+    slowing = width * GRAVITY * 5 / (7 * RADIUS)
+    for _ in range(6):
+        simulation.advance(0.05)
+    np.testing.assert_allclose(simulation.linear_velocity[:, 0],
+                               speed - slowing * simulation.time, rtol=1e-12)
 
 
 def test_a_ball_rests_on_a_slope_that_its_width_holds():

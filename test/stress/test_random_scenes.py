@@ -24,11 +24,11 @@ from stress_scenes import attitude, body, scene
 
 from watching import cpu_limit, Watch
 
-ENERGY = 1e-5
-"""What energy may rise by in parts of its scale: steps of few bodies keep it to second order."""
+ENERGY = 1e-8
+"""What energy may rise by in parts of its scale."""
 
 ENERGY_OF_STACKS = 1e-4
-"""The same of stacks, where it is raised by what a pile has let sink."""
+"""The same of stacks, whose piles may leave overlaps that count as somebody else's."""
 
 MOMENTUM = 1e-12
 """What momentum may change by where nothing external acts, in parts of what flies about."""

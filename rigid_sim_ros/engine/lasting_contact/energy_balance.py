@@ -32,7 +32,7 @@ friction what of it goes along all of them, and turns about their normal. The re
 it: the kinetic energy is that of the one and the other.
 """
 
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +41,7 @@ from rigid_sim_ros.engine import rotation
 from rigid_sim_ros.engine.graph import connected
 from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.near import Near
-from rigid_sim_ros.engine.lasting_contact.step import second_half, Trial
+from rigid_sim_ros.engine.lasting_contact.step import Push, second_half, Trial
 
 _ROUNDING = 1e-15
 """Of the kinetic energy: a change that is none."""
@@ -74,8 +74,8 @@ class Ending(NamedTuple):
     near: Near
     """The contacts there."""
 
-    shift: np.ndarray
-    """(2, 3, n): how far [m], [rad] bodies have been pushed there, if energy allows."""
+    push: Push
+    """How overlaps have been pushed out there, if energy allows; None if they have not."""
 
     @property
     def halves(self):
@@ -86,15 +86,13 @@ class Ending(NamedTuple):
         return halves[self.trial.impulse is None:]
 
 
-def ending_of(trial, before, near, which, shift=None):
+def ending_of(trial, before, near, which, push=None):
     """Return the `Ending` of a step, with the impulses of its second half at contacts (m,) int."""
-    if shift is None:
-        shift = np.zeros((2, *before.linear.shape))
-    return Ending(trial, before, *second_half(before, near, which, trial.step), near, shift)
+    return Ending(trial, before, *second_half(before, near, which, trial.step), near, push)
 
 
 class Group(NamedTuple):
-    """Bodies that act on each other."""
+    """Bodies that act on each other, or are pushed out of each other."""
 
     members: list
     """(m,) int"""
@@ -108,7 +106,8 @@ class Group(NamedTuple):
     slip: float
     """
     [m/s]: how fast contacts slide, or part, on the average of the normal forces on a body; of the
-    body with which that is most. Light ones slide on heavy ones that stick.
+    body with which that is most. Light ones slide on heavy ones that stick. Infinite where some
+    are pushed that do not press.
     """
 
 
@@ -131,7 +130,8 @@ def balanced(ending, slide_speed, carry=True):
         return ending.after, ending.near
     still = _STILL * slide_speed
     sticking = [group.rough and group.slip <= still for group in groups]
-    motion, near, shift = ending.after, ending.near, ending.shift
+    motion, near = ending.after, ending.near
+    shift = ending.push.shift if ending.push else np.zeros((2, *motion.linear.shape))
     if carry and any(sticking):
         motion, near, carried = _carried(ending, [
             body for group, sticks in zip(groups, sticking) if sticks for body in group.members])
@@ -149,7 +149,7 @@ def balanced(ending, slide_speed, carry=True):
 
 
 def _groups(ending):
-    """Return the `Group`s of bodies that press on each other at the start or at the end."""
+    """Return the `Group`s of bodies that press on each other, or are pushed, in a step."""
     pairs, normals, forces, slips = [], [], [], []
     for near, impulse, across in ending.halves:
         pressing = np.flatnonzero(impulse[0] > 0.0)
@@ -158,6 +158,14 @@ def _groups(ending):
         normals += near.contacts.normal[:, pressing].T.tolist()
         forces += impulse[0, pressing].tolist()
         slips += np.sqrt(rotation.dot(across, across)).tolist()
+    if ending.push:
+        known, near = set(pairs), ending.push.near
+        only = [place for place in ending.push.which.tolist()
+                if near.body_pairs[place] not in known]
+        pairs += [near.body_pairs[place] for place in only]
+        normals += near.contacts.normal[:, only].T.tolist()
+        forces += [1.0] * len(only)
+        slips += [inf] * len(only)
     bodies = ending.near.island.bodies
     count, result = bodies.moving_count, []
     for places in connected(pairs, count):

@@ -74,6 +74,8 @@ class Island:
         """The margin [m] and the `Near` that were found last."""
         self.pile = None
         """What many members keep from step to step."""
+        self.displaced = False
+        """Whether a member may have been put elsewhere since a pile has looked."""
         self._parts = {}
         """Islands of some of the members, by these and their pairs."""
         self.older_piles = [island.pile for island in older if island.pile is not None]
@@ -167,6 +169,12 @@ class Island:
             self.pile.quiet.forget(indices)
         for part in self._parts.values():
             part.disturb(indices)
+
+    def displace(self):
+        """Note that bodies have been put elsewhere, members or not."""
+        self.displaced = True
+        for part in self._parts.values():
+            part.displace()
 
     def near(self, motion, margin):
         """Return the contacts `Near` a `Motion`, with gaps below a margin [m]."""

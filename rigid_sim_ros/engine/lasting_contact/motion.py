@@ -121,15 +121,18 @@ class FreeMotion:
         return 0.5 * (self.mass * rotation.dot(motion.linear, motion.linear)
                       + rotation.dot(self._inertia * rate, rate))
 
-    def work(self, start, end, time):
+    def work(self, start, end, time, rates=None):
         """
         Return what held forces and torques have done between two motions, (n,) [J].
 
-        That of torques is to second order in the time [s], exact if rates change evenly.
+        That of torques is to second order in the time [s]: at the mean of the rates (3, n) of
+        both, which is exact if they change evenly, or at those given [rad/s].
         """
         work = self.mass * rotation.dot(self.acceleration, end.position - start.position)
         if self.torque.any():
-            work += 0.5 * time * rotation.dot(self.torque, start.angular + end.angular)
+            if rates is None:
+                rates = 0.5 * (start.angular + end.angular)
+            work += time * rotation.dot(self.torque, rates)
         return work
 
     def turned_by_torques(self, motion, time):

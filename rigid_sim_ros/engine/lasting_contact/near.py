@@ -117,8 +117,19 @@ class Near:
         That is velocities across them, plus `bias` (3, k) in contact axes, of no approach, with
         friction; `slip` (2, k) are directions known, see `ContactProblem`. `half` names what they
         are for, `time` [s] is that of the step: the last forces of the same name are what the
-        solver starts from. The impulses (3, k) are in contact axes.
+        solver starts from. The impulses (3, k) are in contact axes. What resists spin does so by
+        as much as it would at each contact by itself.
         """
+        struck, impulse = self._kept(motion, which, half, time, bias, slip)
+        if self.island.resists_spin and impulse.any():
+            resistance = Resistance(self.island.bodies, self.contacts, self.position,
+                                    self.orientation, impulse, self._friction)
+            turned = motion.angular + resistance.turned(struck.linear, struck.angular)
+            return self._kept(replace(motion, angular=turned), which, half, time, bias, slip)
+        return struck, impulse
+
+    def _kept(self, motion, which, half, time, bias, slip):
+        """Return what `struck` does, without friction against rolling and pivoting."""
         count = self.count
         free = self.rows.components(self.across(motion)).reshape(3, count)
         if bias is not None:
@@ -144,10 +155,7 @@ class Near:
         if time > 0.0:
             self.island.forces[half] = (self.scene_pairs, self.contacts.point,
                                         self.rows.world(start.ravel()) / time)
-        struck = motion.struck(self.rows.touched, *self.rows.change(impulse.ravel()))
-        if self.island.resists_spin:
-            struck = self._resisted(struck, impulse)
-        return struck, impulse
+        return motion.struck(self.rows.touched, *self.rows.change(impulse.ravel())), impulse
 
     def shifted(self, motion, linear, angular):
         """
@@ -164,13 +172,6 @@ class Near:
                 self.contacts, separation=self.contacts.separation + rotation.dot(
                     self.contacts.normal, self.rows.across(linear, angular)))
         return near
-
-    def _resisted(self, motion, impulse):
-        """Return the motion after friction against rolling and pivoting under impulses (3, k)."""
-        resistance = Resistance(self.island.bodies, self.contacts, self.position,
-                                self.orientation, impulse, self._friction)
-        return replace(motion, **dict(zip(
-            ('linear', 'angular'), resistance.applied(motion.linear, motion.angular))))
 
     def _remembered(self, half, time):
         """

@@ -61,8 +61,11 @@ REST = 3e-4
 EQUILIBRIUM = 1e-6
 """Of the acceleration scale: what contact forces may leave of it on a body at rest."""
 
-MAX_CUTS = 8
+MAX_BOUNCES = 8
 """Impacts in one step; after so many the rest of it has no restitution."""
+
+MAX_CUTS = 64
+"""The same; after so many it is not cut any more, and ends with an overlap that is pushed out."""
 
 
 @dataclass(frozen=True)

@@ -103,6 +103,19 @@ class Trial(NamedTuple):
         return cls(free, motion, motion, motion, 0.0, near)
 
 
+class Push(NamedTuple):
+    """How overlaps have been pushed out."""
+
+    shift: np.ndarray
+    """(2, 3, n): how far bodies have been moved [m] and turned [rad]."""
+
+    near: Near
+    """The contacts before."""
+
+    which: np.ndarray
+    """(m,) int: those of them that pushed."""
+
+
 def first_half(free, start, near, step, limits):
     """Return the `Trial` of a step [s] from a `Motion` with the contacts `Near` it."""
     kicked = free.kicked(start, 0.5 * step)
@@ -136,15 +149,17 @@ def push_out(motion, near):
     """
     Return the motion with bodies moved so that no contact overlaps, without friction.
 
-    And the shift (2, 3, n): how far they are moved [m] and turned [rad].
+    And the `Push` that did it.
     """
     rows, count = near.rows, near.count
     shift = np.zeros((2, *motion.linear.shape))
     zeros = np.zeros(count)
     free = np.concatenate((near.contacts.separation, zeros, zeros))
     problem = ContactProblem(rows.response(), free, zeros, zeros, np.zeros((2, count)))
-    shift[:, :, rows.touched] = rows.change(solve(problem).force)
-    return motion.moved(np.arange(shift.shape[2]), *shift), shift
+    force = solve(problem).force
+    shift[:, :, rows.touched] = rows.change(force)
+    return (motion.moved(np.arange(shift.shape[2]), *shift),
+            Push(shift, near, np.flatnonzero(force[:count] > 0.0)))
 
 
 def _turning(near, motion, step):

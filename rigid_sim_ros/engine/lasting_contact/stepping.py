@@ -76,29 +76,29 @@ def _advance(island, free, scales, limits, motion, time, step):
         motion = cut.resolve(Trial.of_no_time(free, motion, near), motion, near, scales, limits,
                              time, rebounds=True)
     left = step
-    for number in range(2 * units.MAX_CUTS + 1):
+    for number in range(units.MAX_CUTS + 1):
         trial = first_half(free, motion, near, left, limits)
         end = trial.end()
         end_near = island.near(end, margin)
         hit = cut.impact_time(trial, end, end_near, scales, limits, dip)
-        if hit is None or number == 2 * units.MAX_CUTS:
+        if hit is None or number == units.MAX_CUTS:
             left = 0.0
             break
         trial, motion, near = cut.first_impact(island, limits, overlap, margin, trial, hit)
         left -= trial.step
         motion = cut.resolve(trial, motion, near, scales, limits, time + step - left,
-                             rebounds=number < units.MAX_CUTS)
+                             rebounds=number < units.MAX_BOUNCES)
         if left <= cut.SHORTEST * step:
             left = 0.0
         if not left or _turns(island, motion, left) > _FASTER:
             trial, end, end_near = Trial.of_no_time(free, motion, near), motion, near
             break
-    end, end_near, shift = _separated(end, end_near, scales, margin)
+    end, end_near, push = _separated(end, end_near, scales, margin)
     closed = end_near.closed(limits.touch_gap)
     if closed.size:
         # what arrives fast just now is an impact, the first thing in the next step
         closed = closed[end_near.approach(end)[closed] <= limits.impact_speed]
-    ending = ending_of(trial, end, end_near, closed, shift)
+    ending = ending_of(trial, end, end_near, closed, push)
     motion, near = balanced(ending, limits.slide_speed)
     island.remember(near, margin)
     return motion, near, left
@@ -106,19 +106,19 @@ def _advance(island, free, scales, limits, motion, time, step):
 
 def _separated(motion, near, scales, margin):
     """
-    Return (motion, contacts near it, the shift) with overlaps pushed out.
+    Return (motion, contacts near it, what is to be paid for) with overlaps pushed out.
 
-    The shift (2, 3, n) is that which has to be paid for, None if there is none.
+    The last is a `Push` or None.
     """
     deepest = -float(near.contacts.separation.min(initial=0.0))
     if deepest <= units.OVERLAP * scales.length:
         return motion, near, None
-    motion, shift = push_out(motion, near)
+    motion, push = push_out(motion, near)
     # contacts of bodies that hardly move need not be found again
     if deepest <= units.IMPACT_GAP * scales.length:
-        return motion, near.shifted(motion, *shift), shift
-    owed = shift if deepest <= units.DEEP * scales.length else None
-    return motion, near.island.near(motion, margin), owed
+        return motion, near.shifted(motion, *push.shift), push
+    return motion, near.island.near(motion, margin), (
+        push if deepest <= units.DEEP * scales.length else None)
 
 
 def parts_of(island, free, motion, duration):

@@ -15,6 +15,8 @@
 
 """Energy of few bodies at the end of a step: what lifts them is paid for, or does not happen."""
 
+from dataclasses import replace
+
 from island_run import body, ground, IslandRun
 
 import numpy as np
@@ -68,6 +70,19 @@ def test_what_slides_sunk_is_lifted_out_of_its_motion(count):
     assert overlap(run) < 1e-8 * EDGE
 
 
+@pytest.mark.parametrize('friction', [0.0, 0.5])
+def test_what_parts_sunk_is_lifted_out_of_its_motion(friction):
+    """A cube that jumps off another in which it has sunk: nothing presses, and yet it pays."""
+    run = IslandRun(
+        [body('lower', Cube(EDGE), position=(0.0, 0.0, 0.5 * EDGE)),
+         body('upper', Cube(EDGE), position=(0.0, 0.0, 1.5 * EDGE - SUNK),
+              velocity=(0.0, 0.0, 0.005))], friction=friction, gravity=(0.0, 0.0, -0.1))
+    before = run.energy()
+    run.step()
+    assert run.energy() <= before + 1e-15
+    assert overlap(run) < 1e-8 * EDGE
+
+
 def test_one_cube_slides_on_at_the_level_to_which_it_has_sunk():
     """By v t - mu g t^2 / 2, as there is no other law for it; flat, and no higher."""
     run = sunk_column(1, velocity=1.0)
@@ -78,7 +93,7 @@ def test_one_cube_slides_on_at_the_level_to_which_it_has_sunk():
     assert z == pytest.approx(0.5 * EDGE - SUNK, rel=1e-12)
 
 
-def leaning_column(seed):
+def leaning_column(seed, step=1 / 240, **values):
     """Return two to five boxes of unlike masses that fall onto each other, slightly askew."""
     random = np.random.default_rng(seed)
     bodies = []
@@ -89,7 +104,31 @@ def leaning_column(seed):
             f'box_{level}', shape, float(10 ** random.uniform(-0.5, 0.5)),
             position=(*(0.003 * random.normal(size=2)).tolist(), 0.11 + 0.212 * level),
             orientation=tuple(turn / np.linalg.norm(turn)), velocity=(0.0, 0.0, -0.3)))
-    return IslandRun(bodies, restitution=0.5, friction=0.5)
+    material = Material(0.5, 0.5, **values)
+    return IslandRun([replace(each, material=material) for each in bodies],
+                     [ground(material=material)], step=step)
+
+
+@pytest.mark.parametrize('seed', [8, 22])
+def test_what_resists_spin_keeps_faces_where_they_are(seed):
+    """Boxes with rolling friction that lie down on four corners, not only the one resisted."""
+    run = leaning_column(seed, step=0.01, rolling_friction=0.002, pivoting_friction=0.002)
+    for _ in range(60):
+        run.step()
+        assert overlap(run) < 1e-7
+
+
+def test_a_cascade_of_impacts_leaves_no_deep_overlap():
+    """A column of four in a step of 1/100 s with more than twenty impacts."""
+    run = leaning_column(12, step=0.01, rolling_friction=0.002, pivoting_friction=0.002)
+    deepest, most = 0.0, 0
+    for _ in range(20):
+        before = run.world.work.impacts
+        run.step()
+        deepest = max(deepest, overlap(run))
+        most = max(most, run.world.work.impacts - before)
+    assert deepest < 1e-9 * EDGE
+    assert most > 16
 
 
 @pytest.mark.parametrize('seed', [0, 1, 2, 3, 6, 9])

@@ -122,9 +122,11 @@ class Pile:
         scales = island.scales(free)
         motion = island.gather(state)
         if self.contacts is not None and not same_poses(self._end, motion):
-            # somebody was put elsewhere: not where gaps were followed to, perhaps into others
-            motion = self._renew(motion, free, scales, duration, inf)
+            # not where gaps were followed to: parts have been stepped by themselves meanwhile, or
+            # somebody was put elsewhere, perhaps into others
+            motion = self._renew(motion, free, scales, duration, inf if island.displaced else 0.0)
             self._end = motion
+        island.displaced = False
         groups = np.full(island.member_count, -1)
         if self._rest_is_next():
             groups, contacts = resting_members(

@@ -13,6 +13,8 @@
 # limitations under the License.
 """One step of a pile: velocities by contact forces, poses by velocities, rebounds."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigid_sim_ros.engine.friction import mixed_friction
@@ -20,6 +22,7 @@ from rigid_sim_ros.engine.lasting_contact.motion import Motion
 from rigid_sim_ros.engine.lasting_contact.pile.energy import kept_part, rebound_part
 from rigid_sim_ros.engine.lasting_contact.pile.pile_contacts import PileContacts
 from rigid_sim_ros.engine.lasting_contact.pile.solver_limits import ACCURACY, solver_limits
+from rigid_sim_ros.engine.lasting_contact.pile.turning_gain import without_gain
 from rigid_sim_ros.engine.spin_friction import Resistance
 
 HIT_ROUNDS = 4
@@ -185,17 +188,19 @@ class PileStep:
         impulse, closed = contacts.forces(self.forces), self.closed
         rebound = np.where(self.hits & closed,
                            contacts.restitution(-self.speed) * self.speed, 0.0)
-        self.lost = min(self.lost, self._lost_on_the_way())
+        gained = self._gained()
+        self.lost = min(self.lost, max(0.0, -float(gained.sum())))
+        self.end = without_gain(self._island.bodies, self._free, self.end, gained, contacts,
+                                closed, self._scales)
         if rebound.any():
             impulse = impulse + self._rebound(closed, rebound)
         return self.hits & closed & ~self._pressed, impulse
 
-    def _lost_on_the_way(self):
-        """Return the energy [J] lost in all, also by how bodies of unequal moments turn."""
+    def _gained(self):
+        """Return the energy (n,) [J] gained, also by how bodies of unequal moments turn."""
         free, start, end = self._free, self._start, self.end
-        gained = (free.kinetic_energy(end) - free.kinetic_energy(start)
-                  - free.work(start, end, self._duration))
-        return max(0.0, -float(gained.sum()))
+        return (free.kinetic_energy(end) - free.kinetic_energy(start)
+                - free.work(start, end, self._duration, self.passage.angular))
 
     def _rebound(self, closed, rebound):
         """
@@ -239,7 +244,12 @@ class PileStep:
     def _resisted(self, linear, angular):
         """Return velocities (3, n) after friction against rolling and pivoting."""
         contacts, bodies = self.contacts, self._island.bodies
-        found = contacts.contacts
+        # points were found some steps ago and have gone along with what moves since
+        found, arms = contacts.contacts, contacts.found.arms
+        mobile = found.body_a < bodies.moving_count
+        found = replace(found, point=np.where(
+            mobile, self._start.position[:, found.body_a] + arms[0],
+            self._start.position[:, found.body_b] + arms[1]))
         return Resistance(
             bodies, found, self._start.position, self._start.orientation,
             contacts.forces(self.forces),
